@@ -129,12 +129,12 @@ private:
                 const int border = octave.borders[s];
                 if (y < border || y >= octave.size.height - border)
                     break;
-                const float* const bounds[] = {space.largest(s), space.largest(std::max(s - 1, 0)),
+                const short* const bounds[] = {space.largest(std::max(s - 1, 0)), space.largest(s),
                         space.largest(std::min(s + 1, last))};
-                const int n = kernels.maxima(space.response(s, y), bounds, least, border,
+                const int n = kernels.maxima(space.upper(s, y), bounds, upperHalf(least), border,
                         octave.size.width - border, columns.data());
                 for (int i = 0; i < n; i++)
-                    if (!repeatsEarlier(space, s, y, columns[i]))
+                    if (isExtremum(octave, space, s, columns[i], least))
                         add(extremumAt(octave, space, s, y, columns[i]), found);
             }
             if (most > 0 && found.size() >= 2 * most)
@@ -154,27 +154,33 @@ private:
             found.push_back(e);
     }
 
-    //! Whether a neighbour that comes earlier has the same response.
-    static bool repeatsEarlier(const ScaleSpace& space, size_t s, int y, int x)
+    //! Whether a response is at least `least`, larger than its neighbours that come earlier and not smaller than the others.
+    static bool isExtremum(const Octave& octave, const ScaleSpace& space, size_t s, int x, float least)
     {
-        const float *row = space.response(s, y), *above = space.response(s, y - 1);
-        const float value = row[x];
-        return row[x - 1] == value || above[x - 1] == value || above[x] == value || above[x + 1] == value ||
-               (s > 0 && space.largest(s - 1)[x] == value);
+        const float* const* rows = space.around(s);
+        const float value = rows[1][x];
+        const auto largest = [x](const float* r) { return std::max(std::max(r[x - 1], r[x]), r[x + 1]); };
+        const auto exceeds = [&](const float* r) { return value > largest(r); };
+        const auto reaches = [&](const float* r) { return value >= largest(r); };
+        return value >= least && exceeds(rows[0]) && value > rows[1][x - 1] && value >= rows[1][x + 1] &&
+               reaches(rows[2]) &&
+               (s == 0 || std::all_of(space.around(s - 1), space.around(s - 1) + 3, exceeds)) &&
+               (s + 1 == octave.sigmas.size() ||
+                       std::all_of(space.around(s + 1), space.around(s + 1) + 3, reaches));
     }
 
     static Extremum extremumAt(const Octave& octave, const ScaleSpace& space, size_t s, int y, int x)
     {
         Extremum e;
-        for (int dy = -1; dy <= 1; dy++)
-            std::copy_n(space.response(s, y + dy) + x - 1, 3, e.around[dy + 1]);
+        for (int dy = 0; dy < 3; dy++)
+            std::copy_n(space.around(s)[dy] + x - 1, 3, e.around[dy]);
         e.response = e.around[1][1];
         e.scale = octave.first + (int)s;
         e.y = y;
         e.x = x;
         const bool inside = s > 0 && s + 1 < octave.sigmas.size();
-        e.smaller = inside ? space.response(s - 1, y)[x] : e.response;
-        e.larger = inside ? space.response(s + 1, y)[x] : e.response;
+        e.smaller = inside ? space.around(s - 1)[1][x] : e.response;
+        e.larger = inside ? space.around(s + 1)[1][x] : e.response;
         return e;
     }
 

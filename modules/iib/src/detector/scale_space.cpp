@@ -84,8 +84,10 @@ ScaleSpace::ScaleSpace(const Mat& normalized_, const Octave& octave_, int first_
         if (s.distance)
         {
             responses.push_back(PaddedRows<float>(Size(width, 3), 1, true));
-            maxima.push_back(PaddedRows<float>(Size(width, 1), 1, true));
+            upperHalves.push_back(PaddedRows<short>(Size(width, 3), 1, true));
+            maxima.push_back(PaddedRows<short>(Size(width, 1), 1, true));
         }
+    nearRows.resize(responses.size());
 }
 
 void ScaleSpace::advance(int y)
@@ -98,11 +100,9 @@ void ScaleSpace::advance(int y)
         if (next + 1 >= first - 1)
             makeResponses(next + 1);
     }
-    for (size_t i = 0; i < maxima.size(); i++)
-    {
-        const float* const rows[] = {response(i, y - 1), response(i, y), response(i, y + 1)};
-        kernels.largest(rows, maxima[i].row(0), octave.size.width);
-    }
+    for (size_t i = 0; i < nearRows.size(); i++)
+        for (int dy = 0; dy < 3; dy++)
+            nearRows[i][dy] = responses[i].row(y - 1 + dy);
 }
 
 //! Row y of image 0.
@@ -153,7 +153,11 @@ void ScaleSpace::makeResponses(int y)
         {
             const short* const rows[] = {images[i + 1].row(std::max(y - d, 0)), images[i + 1].row(y),
                     images[i + 1].row(std::min(y + d, octave.size.height - 1))};
-            kernels.response(rows, d, octave.steps[i].factor, responses[scale].row(y), octave.size.width);
+            PaddedRows<short>& upper = upperHalves[scale];
+            kernels.response(rows, d, octave.steps[i].factor,
+                    {responses[scale].row(y), upper.row(y), upper.row(y - 1), upper.row(y - 2),
+                            maxima[scale].row(0)},
+                    octave.size.width);
             scale++;
         }
 }

@@ -6,6 +6,8 @@
 
 #include "kernels/kernels.hpp"
 
+#include <array>
+
 namespace cv {
 namespace iib {
 
@@ -44,10 +46,12 @@ public:
     //! Makes ready what the other functions give for row y: `first`, then one more with each call.
     void advance(int y);
 
-    //! A row of responses: y - 1, y or y + 1.
-    const float* response(size_t scale, int y) const { return responses[scale].row(y); }
-    //! The largest of 3 x 3 responses, of row y.
-    const float* largest(size_t scale) const { return maxima[scale].row(0); }
+    //! Rows of responses: y - 1, y and y + 1.
+    const float* const* around(size_t scale) const { return nearRows[scale].data(); }
+    //! The upper halves of row y's responses, see upperHalf().
+    const short* upper(size_t scale, int y) const { return upperHalves[scale].row(y); }
+    //! The largest of these in rows y - 1, y and y + 1.
+    const short* largest(size_t scale) const { return maxima[scale].row(0); }
 
 private:
     void readRow(int y, short* out);
@@ -67,7 +71,9 @@ private:
     std::vector<int> earliest;  //!< the first row of an image that is needed
     std::vector<PaddedRows<short>> images;
     std::vector<PaddedRows<short>> smoothedDown;  //!< one row, on the way from an image to the next
-    std::vector<PaddedRows<float>> responses, maxima;
+    std::vector<PaddedRows<float>> responses;
+    std::vector<PaddedRows<short>> upperHalves, maxima;
+    std::vector<std::array<const float*, 3>> nearRows;
 };
 
 }  // namespace iib

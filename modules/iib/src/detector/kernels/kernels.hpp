@@ -6,6 +6,8 @@
 
 #include "../../common/aligned_buffer.hpp"
 
+#include <cstring>
+
 namespace cv {
 namespace iib {
 
@@ -17,6 +19,23 @@ struct SmoothingWeights
     short near, far;
 };
 
+//! The upper half of a float's bits. Those of positive ones have their order, and all others are below them.
+inline short upperHalf(float value)
+{
+    int bits;
+    std::memcpy(&bits, &value, sizeof(bits));
+    return (short)(bits >> 16);
+}
+
+//! A row of responses, and what is made with it.
+struct ResponseRows
+{
+    float* values;
+    short* upper;                      //!< their upper halves, see upperHalf()
+    const short *before, *beforeThat;  //!< those of the two rows above
+    short* largest;                    //!< of these three, in each column
+};
+
 /* What the detector does with rows. Pixels of 8 bits have no padding. Responses are floats in one order. */
 struct DetectorKernels
 {
@@ -26,12 +45,11 @@ struct DetectorKernels
     void (*smooth)(const short* const rows[5], SmoothingWeights weights, short* out, int width);
     /** The determinant of the Hessian, factor * (Ixx Iyy - Ixy^2), by differences over `distance` pixels; rows: `distance`
      above, at and below. Ixy is a quarter of a difference of four values, rounded. */
-    void (*response)(const short* const rows[3], int distance, float factor, float* out, int width);
-    //! The largest of 3 x 3 values.
-    void (*largest)(const float* const rows[3], float* out, int width);
-    /** Columns from `begin` to before `end` where the value is at least `threshold`, which is positive, and at least
-     what three rows hold there. Returns their number. */
-    int (*maxima)(const float* values, const float* const bounds[3], float threshold, int begin, int end,
+    void (*response)(
+            const short* const rows[3], int distance, float factor, const ResponseRows& out, int width);
+    /** Columns from `begin` to before `end` where the upper half is at least `threshold`, which is positive, and at least what
+     three rows hold there and in the columns beside. Returns their number. */
+    int (*maxima)(const short* upper, const short* const bounds[3], short threshold, int begin, int end,
             int* columns);
 };
 

@@ -54,10 +54,13 @@ void smooth(const short* const rows[5], SmoothingWeights weights, short* out, in
     }
 }
 
-void response(const short* const rows[3], int distance, float factor, float* out, int width)
+void response(const short* const rows[3], int distance, float factor, const ResponseRows& out, int width)
 {
     const v_float32 scale = vx_setall_f32(factor);
-    const short *above = rows[0], *row = rows[1], *below = rows[2];
+    const short *above = rows[0], *row = rows[1], *below = rows[2], *before = out.before,
+                *beforeThat = out.beforeThat;
+    float* const values = out.values;
+    short *const upper = out.upper, *const largest = out.largest;
     for (int x = 0; x < width; x += SHORTS)
     {
         const int l = x - distance, r = x + distance;
@@ -70,46 +73,51 @@ void response(const short* const rows[3], int distance, float factor, float* out
         v_int16 first0, first1, second0, second1;
         v_zip(xx, mixed, first0, first1);
         v_zip(yy, vx_setzero_s16() - mixed, second0, second1);
-        v_store(out + x, v_cvt_f32(v_dotprod(first0, second0)) * scale);
-        v_store(out + x + INTS, v_cvt_f32(v_dotprod(first1, second1)) * scale);
+        const v_float32 low = v_cvt_f32(v_dotprod(first0, second0)) * scale;
+        const v_float32 high = v_cvt_f32(v_dotprod(first1, second1)) * scale;
+        v_store(values + x, low);
+        v_store(values + x + INTS, high);
+        const v_int16 halves = v_pack(v_reinterpret_as_s32(low) >> 16, v_reinterpret_as_s32(high) >> 16);
+        v_store(upper + x, halves);
+        v_store(largest + x, v_max(v_max(vx_load(before + x), vx_load(beforeThat + x)), halves));
     }
 }
 
-void largest(const float* const rows[3], float* out, int width)
+//! The lanes of two vectors, one behind the other, from lane N on. Of bytes, this is one instruction everywhere.
+template <int N> inline v_int16 lanesFrom(const v_int16& first, const v_int16& second)
 {
-    const float *const above = rows[0], *const row = rows[1], *const below = rows[2];
-    const auto ofColumn = [&](int x) {
-        return v_max(v_max(vx_load(above + x), vx_load(row + x)), vx_load(below + x));
-    };
-    v_float32 before = ofColumn(-INTS), columns = ofColumn(0);
-    for (int x = 0; x < width; x += INTS)
-    {
-        const v_float32 after = ofColumn(x + INTS);
-        const v_float32 left = v_extract<INTS - 1>(before, columns), right = v_extract<1>(columns, after);
-        v_store(out + x, v_max(v_max(left, columns), right));
-        before = columns;
-        columns = after;
-    }
+    return v_reinterpret_as_s16(
+            v_extract<N*(int)sizeof(short)>(v_reinterpret_as_u8(first), v_reinterpret_as_u8(second)));
 }
-
-//! The bits of floats, which as integers have the same order where the larger one is positive.
-inline v_int32 bits(const float* values) { return v_reinterpret_as_s32(vx_load(values)); }
 
 int maxima(
-        const float* values, const float* const bounds[3], float threshold, int begin, int end, int* columns)
+        const short* values, const short* const largest[3], short threshold, int begin, int end, int* columns)
 {
+    const int TOGETHER = 32;  // columns, so that few branches depend on what is found
+    const short *const smaller = largest[0], *const same = largest[1], *const larger = largest[2];
+    const auto ofColumn = [&](int x) {
+        return v_max(v_max(vx_load(smaller + x), vx_load(same + x)), vx_load(larger + x));
+    };
     int n = 0;
-    const v_int32 least = v_reinterpret_as_s32(vx_setall_f32(threshold));
-    for (int x = 0; x < end; x += INTS)
+    const v_int16 least = vx_setall_s16(threshold);
+    v_int16 before = ofColumn(-SHORTS), column = ofColumn(0);
+    for (int from = 0; from < end; from += TOGETHER)
     {
-        const v_int32 v = bits(values + x);
-        const v_int32 bound =
-                v_max(v_max(bits(bounds[0] + x), least), v_max(bits(bounds[1] + x), bits(bounds[2] + x)));
-        for (unsigned found = greaterEqualMask(v, bound); found; found &= found - 1)
+        unsigned exceeded = 0;
+        for (int i = 0; i < TOGETHER; i += SHORTS)
         {
-            const int column = x + (int)trailingZeros32(found);
-            if (column >= begin && column < end)
-                columns[n++] = column;
+            const v_int16 after = ofColumn(from + i + SHORTS);
+            const v_int16 bound = v_max(v_max(lanesFrom<SHORTS - 1>(before, column), v_max(column, least)),
+                    lanesFrom<1>(column, after));
+            exceeded |= greaterMask(bound, vx_load(values + from + i)) << i;
+            before = column;
+            column = after;
+        }
+        for (unsigned found = ~exceeded; found; found &= found - 1)
+        {
+            const int x = from + (int)trailingZeros32(found);
+            if (x >= begin && x < end)
+                columns[n++] = x;
         }
     }
     return n;
@@ -119,7 +127,7 @@ int maxima(
 
 const DetectorKernels& detectorKernels()
 {
-    static const DetectorKernels kernels = {centre, smooth, response, largest, maxima};
+    static const DetectorKernels kernels = {centre, smooth, response, maxima};
     return kernels;
 }
 
