@@ -81,7 +81,8 @@ public:
     //! Not initialized, or zeros.
     explicit PaddedRows(Size size_, int reach = 0, bool zeros = false)
         : size(size_), padding(wholeLines<T>(reach + ROW_PADDING)),
-          step(wholeLines<T>(size_.width + 1) + 2 * padding), values(step * size_.height)
+          step(wholeLines<T>(size_.width + 1) + 2 * padding),
+          reciprocal(((uint64)1 << 32) / std::max(size_.height, 1) + 1), values(step * size_.height)
     {
         if (zeros)
             std::fill_n(values.data(), step * size.height, T());
@@ -93,17 +94,23 @@ public:
     //! Repeats the ends of a row of `width` values.
     void repeatEnds(int y, int width, int times = 1)
     {
+        const int together = 8;  // more than that does no harm
         T* const r = row(y);
-        std::fill_n(r - times, times, r[0]);
-        std::fill_n(r + width, times, r[width - 1]);
+        for (int i = 0; i < times; i += together)
+        {
+            std::fill_n(r - i - together, together, r[0]);
+            std::fill_n(r + width + i, together, r[width - 1]);
+        }
     }
 
     Size size;
 
 private:
-    int place(int y) const { return y < size.height ? y : y % size.height; }
+    //! Without a division: exact where the product of y and the number of rows is below 2^32.
+    int place(int y) const { return y < size.height ? y : y - size.height * (int)(y * reciprocal >> 32); }
 
     size_t padding, step;
+    uint64 reciprocal;
     AlignedBuffer<T> values;
 };
 
