@@ -135,13 +135,7 @@ void ScaleSpace::makeRow(size_t image, int y)
         for (int i = 0; i < 5; i++)
             rows[i] = images[image - 1].row(
                     std::min(std::max(y + (i - 2) * s.spacing, 0), octave.size.height - 1));
-        short* const down = smoothedDown[0].row(0);
-        kernels.smooth(rows, s.weights, down, width);
-        smoothedDown[0].repeatEnds(0, width, 2 * s.spacing);
-        for (int i = 0; i < 5; i++)
-            rows[i] = down + (i - 2) * s.spacing;
-        kernels.smooth(rows, s.weights, out, width);
-        images[image].repeatEnds(y, width, s.distance);
+        kernels.smooth(rows, s, smoothedDown[0].row(0), out, width);
     }
 }
 

@@ -11,15 +11,6 @@
 namespace cv {
 namespace iib {
 
-//! Smooths the image before once more. Of the result a Hessian may be taken.
-struct SmoothingStep
-{
-    int spacing;  //!< of the filter's five taps, in pixels
-    SmoothingWeights weights;
-    int distance;  //!< of the Hessian's differences, in pixels; 0: no scale ends with this step
-    float factor;  //!< by which the determinant of these differences is the response, see HessianDetector
-};
-
 //! The scales of one resolution. The scales next to those with keypoints are among them, to be compared with.
 struct Octave
 {

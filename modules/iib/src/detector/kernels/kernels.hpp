@@ -19,6 +19,15 @@ struct SmoothingWeights
     short near, far;
 };
 
+//! Smooths the image before once more. Of the result a Hessian may be taken.
+struct SmoothingStep
+{
+    int spacing;  //!< of the filter's five taps, in pixels
+    SmoothingWeights weights;
+    int distance;  //!< of the Hessian's differences, in pixels; 0: no scale ends with this step
+    float factor;  //!< by which the determinant of these differences is the response, see HessianDetector
+};
+
 //! The upper half of a float's bits. Those of positive ones have their order, and all others are below them.
 inline short upperHalf(float value)
 {
@@ -41,8 +50,9 @@ struct DetectorKernels
 {
     //! Normalized 8-bit pixels around 128 to -127..127 in 2^-6.
     void (*centre)(const uchar* pixels, short* out, int width);
-    //! out = c + near * (b + d - 2 c) + far * (a + e - 2 c) of rows a, b, c, d, e.
-    void (*smooth)(const short* const rows[5], SmoothingWeights weights, short* out, int width);
+    /** out = c + near * (b + d - 2 c) + far * (a + e - 2 c) of rows a, b, c, d, e, `between`, and of that along the row.
+     The ends of both are repeated. */
+    void (*smooth)(const short* const rows[5], const SmoothingStep& step, short* between, short* out, int width);
     /** The determinant of the Hessian, factor * (Ixx Iyy - Ixy^2), by differences over `distance` pixels; rows: `distance`
      above, at and below. Ixy is a quarter of a difference of four values, rounded. */
     void (*response)(

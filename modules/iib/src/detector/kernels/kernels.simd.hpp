@@ -39,12 +39,21 @@ void centre(const uchar* pixels, short* out, int width)
 inline v_int16 plus(const v_int16& a, const v_int16& b) { return v_add_wrap(a, b); }
 inline v_int16 minus(const v_int16& a, const v_int16& b) { return v_sub_wrap(a, b); }
 
-void smooth(const short* const rows[5], SmoothingWeights weights, short* out, int width)
+//! Repeats the ends of a row, at least so many times.
+void repeatEnds(short* row, int width, int times)
+{
+    const v_int16 first = vx_setall_s16(row[0]), last = vx_setall_s16(row[width - 1]);
+    for (int i = 0; i < times; i += SHORTS)
+    {
+        v_store(row - i - SHORTS, first);
+        v_store(row + width + i, last);
+    }
+}
+
+inline void smoothRow(const short* a, const short* b, const short* m, const short* d, const short* e,
+        SmoothingWeights weights, short* out, int width)
 {
     const v_int16 near = vx_setall_s16(weights.near), far = vx_setall_s16(weights.far);
-    // copies: compilers think that stores of vectors change what `rows` holds
-    const short *const a = rows[0], *const b = rows[1], *const m = rows[2], *const d = rows[3],
-                       *const e = rows[4];
     for (int x = 0; x < width; x += SHORTS)
     {
         const v_int16 c = vx_load(m + x), twice = plus(c, c);
@@ -52,6 +61,15 @@ void smooth(const short* const rows[5], SmoothingWeights weights, short* out, in
         const v_int16 farther = minus(plus(vx_load(a + x), vx_load(e + x)), twice);
         v_store(out + x, plus(c, plus(v_mul_hi(nearer, near), v_mul_hi(farther, far))));
     }
+}
+
+void smooth(const short* const rows[5], const SmoothingStep& step, short* between, short* out, int width)
+{
+    const int s = step.spacing;
+    smoothRow(rows[0], rows[1], rows[2], rows[3], rows[4], step.weights, between, width);
+    repeatEnds(between, width, 2 * s);
+    smoothRow(between - 2 * s, between - s, between, between + s, between + 2 * s, step.weights, out, width);
+    repeatEnds(out, width, step.distance);
 }
 
 void response(const short* const rows[3], int distance, float factor, const ResponseRows& out, int width)
