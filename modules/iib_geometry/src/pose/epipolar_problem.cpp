@@ -35,7 +35,7 @@ EpipolarProblem::EpipolarProblem(
       second_(directions(points2, camera2)), pixels_{1 / camera2(0, 0), 1 / camera2(1, 1), 1 / camera1(0, 0),
                                                      1 / camera1(1, 1)}
 {
-    std::transform(pixels_, pixels_ + 4, weights_, square);
+    std::transform(pixels_, pixels_ + 4, weights_.val, square);
     const Rect2d span = spanOf(points2);
     mostScale_ = MOST_SCALE * std::hypot(span.width, span.height);
 }
@@ -64,18 +64,27 @@ Matx33d rotationBetween(const Point2d (&first)[5], const Point2d (&second)[5])
 
 }  // namespace
 
-double EpipolarProblem::squaredError(const Matx33d& E, int i) const
+namespace {
+
+//! Inline and of copies, so that compilers make vectors of loops over matches.
+inline double squaredErrorOf(const Matx33d& E, const Vec4d& weights, const Point2d& u, const Point2d& v)
 {
-    const Point2d &u = first_[i], &v = second_[i];
     const double line0 = E(0, 0) * u.x + E(0, 1) * u.y + E(0, 2),
                  line1 = E(1, 0) * u.x + E(1, 1) * u.y + E(1, 2),
                  line2 = E(2, 0) * u.x + E(2, 1) * u.y + E(2, 2),
                  back0 = E(0, 0) * v.x + E(1, 0) * v.y + E(2, 0),
                  back1 = E(0, 1) * v.x + E(1, 1) * v.y + E(2, 1);
     const double error = v.x * line0 + v.y * line1 + line2;
-    const double length2 = weights_[0] * line0 * line0 + weights_[1] * line1 * line1 +
-                           weights_[2] * back0 * back0 + weights_[3] * back1 * back1;
+    const double length2 = weights[0] * line0 * line0 + weights[1] * line1 * line1 +
+                           weights[2] * back0 * back0 + weights[3] * back1 * back1;
     return error * error / (length2 + NOWHERE);
+}
+
+}  // namespace
+
+double EpipolarProblem::squaredError(const Matx33d& E, int i) const
+{
+    return squaredErrorOf(E, weights_, first_[i], second_[i]);
 }
 
 void EpipolarProblem::propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const
@@ -109,15 +118,19 @@ void EpipolarProblem::propose(const std::vector<int>& sample, std::vector<Relati
 double EpipolarProblem::loss(const RelativePose& pose, double scale, double limit) const
 {
     const Matx33d essential = essentialOf(pose);
+    const Vec4d weights = weights_;
+    const Point2d *const first = first_.data(), *const second = second_.data();
     const double perScale2 = 1 / square(scale);
     double loss = 0;
     for (int begin = 0; begin < size() && loss <= limit; begin += STRIDE)
     {
-        double factors[STRIDE];
+        double shares[STRIDE], product = 1;
         const int count = std::min(STRIDE, size() - begin);
         for (int i = 0; i < count; i++)
-            factors[i] = 1 + std::min(squaredError(essential, begin + i) * perScale2, FARTHEST);
-        loss += std::log(std::accumulate(factors, factors + count, 1., std::multiplies<double>()));
+            shares[i] = squaredErrorOf(essential, weights, first[begin + i], second[begin + i]) * perScale2;
+        for (int i = 0; i < count; i++)
+            product *= 1 + std::min(shares[i], FARTHEST);
+        loss += std::log(product);
     }
     return loss;
 }
@@ -144,20 +157,23 @@ double EpipolarProblem::parallax(const RelativePose& pose, int i) const
 struct EpipolarProblem::Linear
 {
     Matx33d E;
-    Matx33d byStep[5];  //!< of E: [t]x [e]x R, and [b]x R
+    double byStep[9][5];  //!< of E's entries: of [t]x [e]x R, and of [b]x R
 
     explicit Linear(const RelativePose& pose) : E(essentialOf(pose))
     {
         const Matx33d cross = crossProduct(pose.t);
         const Matx<double, 3, 2> tangents = tangentsOf(pose.t);
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 5; k++)
         {
             Vec3d axis;
-            axis[k] = 1;
-            byStep[k] = cross * crossProduct(axis) * pose.R;
+            if (k < 3)
+                axis[k] = 1;
+            else
+                axis = Vec3d(tangents(0, k - 3), tangents(1, k - 3), tangents(2, k - 3));
+            const Matx33d changes = k < 3 ? cross * crossProduct(axis) * pose.R : crossProduct(axis) * pose.R;
+            for (int e = 0; e < 9; e++)
+                byStep[e][k] = changes.val[e];
         }
-        for (int k = 0; k < 2; k++)
-            byStep[3 + k] = crossProduct(Vec3d(tangents(0, k), tangents(1, k), tangents(2, k))) * pose.R;
     }
 };
 
@@ -179,12 +195,9 @@ Row<EpipolarProblem::Step> EpipolarProblem::row(
     Row<Step> row;
     row.r = r;
     row.r2 = r * r;
-    for (int k = 0; k < 5; k++)
-    {
-        row.J[k] = 0;
-        for (int e = 0; e < 9; e++)
-            row.J[k] += byE[e] * linear.byStep[k].val[e];
-    }
+    for (int e = 0; e < 9; e++)  // steps side by side, so that compilers make vectors of them
+        for (int k = 0; k < 5; k++)
+            row.J[k] += byE[e] * linear.byStep[e][k];
     return row;
 }
 

@@ -58,7 +58,7 @@ private:
 
     std::vector<Point2d> first_, second_;  // directions, third coordinate 1
     double pixels_[4];                     // of v and of u: one over the focal lengths
-    double weights_[4];                    // their squares, of the four squares in Sampson's denominator
+    Vec4d weights_;                        // their squares, of the four squares in Sampson's denominator
     double mostScale_;
 };
 

@@ -35,9 +35,11 @@ void addProduct(const Quadratic& a, const Linear& b, double* sum)
             sum[CUBIC[i][j]] += a[i] * b[j];
 }
 
-//! Brings the first ROWS columns, in an order that `column` receives, to the identity. False: singular.
+/** Brings the first ROWS columns, in an order that `column` receives, to the identity. False: singular.
+@param candidates columns among which pivots are looked for, all; 0: columns keep their order, and are left as they are once they
+    count no more, as are the rows before `needed`. */
 template <int ROWS, int COLUMNS>
-bool eliminate(Matx<double, ROWS, COLUMNS>& m, int candidates, int (&column)[COLUMNS])
+bool eliminate(Matx<double, ROWS, COLUMNS>& m, int candidates, int needed, int (&column)[COLUMNS])
 {
     for (int c = 0; c < COLUMNS; c++)
         column[c] = c;
@@ -52,7 +54,8 @@ bool eliminate(Matx<double, ROWS, COLUMNS>& m, int candidates, int (&column)[COL
         const double pivot = m(row, column[k]);
         if (!(std::abs(pivot) > SINGULAR))
             return false;
-        for (int c = 0; c < COLUMNS; c++)
+        const int first = candidates ? 0 : k;
+        for (int c = first; c < COLUMNS; c++)
         {
             std::swap(m(row, c), m(k, c));
             m(k, c) /= pivot;
@@ -60,9 +63,9 @@ bool eliminate(Matx<double, ROWS, COLUMNS>& m, int candidates, int (&column)[COL
         for (int r = 0; r < ROWS; r++)
         {
             const double factor = m(r, column[k]);
-            if (r == k || factor == 0)
+            if (r == k || (r < k && r < needed) || factor == 0)
                 continue;
-            for (int c = 0; c < COLUMNS; c++)
+            for (int c = first; c < COLUMNS; c++)
                 m(r, c) -= factor * m(k, c);
         }
     }
@@ -80,7 +83,7 @@ bool nullSpace(const Point2d first[5], const Point2d second[5], Linear (&E)[9])
             m(i, k) = v[k / 3] * u[k % 3] / norm(u) / norm(v);
     }
     int column[9];
-    if (!eliminate(m, 9, column))
+    if (!eliminate(m, 9, 0, column))
         return false;
     for (int k = 0; k < 9; k++)
         for (int free = 0; free < 4; free++)
@@ -119,10 +122,11 @@ Matx<double, 10, 20> constraints(const Linear (&E)[9])
 }
 
 // Polynomials in z alone, the constant first.
+template <int HIGHEST_OF_A, int HIGHEST_OF_B>
 void addProduct(const Vec<double, 11>& a, const Vec<double, 11>& b, double factor, Vec<double, 11>& sum)
 {
-    for (int i = 0; i < 11; i++)
-        for (int j = 0; i + j < 11; j++)
+    for (int i = 0; i <= HIGHEST_OF_A; i++)
+        for (int j = 0; j <= HIGHEST_OF_B && i + j < 11; j++)
             sum[i + j] += factor * a[i] * b[j];
 }
 
@@ -134,9 +138,10 @@ void fivePointEssentials(const Point2d first[5], const Point2d second[5], std::v
     Linear E[9];
     if (!nullSpace(first, second, E))
         return;
+    const int FIRST_NEEDED = 4;
     Matx<double, 10, 20> m = constraints(E);
     int column[20];
-    if (!eliminate(m, 0, column))
+    if (!eliminate(m, 0, FIRST_NEEDED, column))
         return;
 
     // Rows 4 to 9 begin with xxz, xx, yyz, yy, xyz, xy: three pairs whose difference has x and y to the first power
@@ -156,9 +161,9 @@ void fivePointEssentials(const Point2d first[5], const Point2d second[5], std::v
     for (int k = 0; k < 3; k++)
     {
         Vec<double, 11> minor = Vec<double, 11>::all(0);
-        addProduct(B[1][(k + 1) % 3], B[2][(k + 2) % 3], 1, minor);
-        addProduct(B[1][(k + 2) % 3], B[2][(k + 1) % 3], -1, minor);
-        addProduct(minor, B[0][k], 1, determinant);
+        addProduct<4, 4>(B[1][(k + 1) % 3], B[2][(k + 2) % 3], 1, minor);
+        addProduct<4, 4>(B[1][(k + 2) % 3], B[2][(k + 1) % 3], -1, minor);
+        addProduct<7, 4>(minor, B[0][k], 1, determinant);
     }
 
     double roots[10];

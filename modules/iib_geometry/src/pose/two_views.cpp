@@ -78,8 +78,9 @@ void posesOf(const Matx33d& essential, RelativePose (&poses)[4])
         std::copy(product.val, product.val + 3, cofactors.val + 3 * r);
     }
     const Matx33d rest = crossProduct(t) * essential;
+    const Matx33d rotations[] = {orthonormal(cofactors - rest), orthonormal(cofactors + rest)};
     for (int k = 0; k < 4; k++)
-        poses[k] = {orthonormal(k < 2 ? cofactors - rest : cofactors + rest), normalize(k % 2 ? -t : t)};
+        poses[k] = {rotations[k / 2], normalize(k % 2 ? -t : t)};
 }
 
 bool inFront(const RelativePose& pose, const Point2d& first, const Point2d& second)

@@ -52,7 +52,8 @@ struct DetectorKernels
     void (*centre)(const uchar* pixels, short* out, int width);
     /** out = c + near * (b + d - 2 c) + far * (a + e - 2 c) of rows a, b, c, d, e, `between`, and of that along the row.
      The ends of both are repeated. */
-    void (*smooth)(const short* const rows[5], const SmoothingStep& step, short* between, short* out, int width);
+    void (*smooth)(
+            const short* const rows[5], const SmoothingStep& step, short* between, short* out, int width);
     /** The determinant of the Hessian, factor * (Ixx Iyy - Ixy^2), by differences over `distance` pixels; rows: `distance`
      above, at and below. Ixy is a quarter of a difference of four values, rounded. */
     void (*response)(
