@@ -94,6 +94,7 @@ class Localization(OnWall):
         made = Location(found.cam_from_world[:3], found.covariance, '', found.matches, found.inliers, found.pixels, found.points)
         for value, same in ((camera, camera), (found, made), (nothing, nothing), (localizer, Localizer(Path(self.map)))):
             self.assertEqual((copy.copy(value), pickle.loads(pickle.dumps(value))), (same, same))
+            self.assertIs(type(pickle.loads(pickle.dumps(value))), type(value))
             self.assertNotEqual(value, 'another')
         self.check(pickle.loads(pickle.dumps(localizer)).localize(self.grey(), pickle.loads(pickle.dumps(camera))))
         self.assertEqual(len(smooth_poses([0, 1], [made, Location()], np.zeros((0, 7)))), 2)

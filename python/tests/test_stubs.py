@@ -18,7 +18,7 @@ UNREADABLE = re.compile(r'opencv_iib\._core\.\S+ (is not a function|is inconsist
                         r'is inconsistent, stub does not have \*args parameter "args"|'
                         r'is inconsistent, stub does not have \*\*kwargs parameter "kwargs")'
                         r'|opencv_iib\.(_types\._cv2|colmap\.pipeline\.(_features|_matcher)|localization\.run\._common_camera) is inconsistent'
-                        r'|opencv_iib\.localization\.localizer\.(Camera|Location) is inconsistent, metaclass differs'
+                        r'|opencv_iib\.localization\.localizer\.(Camera|(Found|No)?Location) is inconsistent, metaclass differs'
                         r'|opencv_iib\.geometry\.No(Pose|Alignment) is a disjoint base at runtime')
 
 
@@ -43,6 +43,11 @@ if pose.found and alignment.found:
 reasons: list[str] = [pose.reason, alignment.reason]
 camera = opencv_iib.localization.Camera('PINHOLE', 9, 9, (9, 9, 4, 4))
 places: NDArray[np.float64] = camera.project([[0, 0, 1]])
+location = opencv_iib.localization.Localizer('m').localize(codes, camera)
+if location.found:
+    matrices += [location.cam_from_world, location.covariance @ np.eye(6)]
+else:
+    nothing: None = location.cam_from_world
 opencv_iib.localization.build(pathlib.Path('m'), pathlib.Path('i'), 'o')
 ''' + '\n'.join(f'print(opencv_iib.{name})' for name in opencv_iib.__all__)
         wrong = ("iib.setBorder('drop')", 'text: str = iib.descriptorSize()', 'iib.detect_and_compute(codes)',

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Iterable, Optional, Union
+from typing import TYPE_CHECKING, Any, Iterable, Literal, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -95,9 +95,9 @@ class Location(_core.Location):
                          integer(matches, 'matches'), integer(inliers, 'inliers'), as_rows_of(pixels, 2, 'pixels'),
                          as_rows_of(points, 3, 'points'))
 
-    @classmethod
-    def _of(cls, core: _core.Location) -> Location:
-        made = cls.__new__(cls)
+    @staticmethod
+    def _of(core: _core.Location) -> Union[FoundLocation, NoLocation]:
+        made: Union[FoundLocation, NoLocation] = FoundLocation.__new__(FoundLocation) if core.found else NoLocation.__new__(NoLocation)
         _core.Location.__init__(made, core)
         return made
 
@@ -110,13 +110,37 @@ class Location(_core.Location):
     __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> Any:
-        return Location, self._values()
+        return type(self), self._values()
 
     def __repr__(self) -> str:
         if self.cam_from_world is None:
             return f'Location(reason={self.reason!r})'
         place = -self.cam_from_world[:3, :3].T @ self.cam_from_world[:3, 3]
         return f'Location(centre {place.round(3).tolist()}, {self.inliers} of {self.matches} matches agree)'
+
+
+class FoundLocation(Location):
+    """A Location with a pose, as type checkers know it where `found` was asked for."""
+
+    if TYPE_CHECKING:
+        @property
+        def found(self) -> Literal[True]: ...
+        @property
+        def cam_from_world(self) -> NDArray[np.float64]: ...
+        @property
+        def covariance(self) -> NDArray[np.float64]: ...
+
+
+class NoLocation(Location):
+    """One without."""
+
+    if TYPE_CHECKING:
+        @property
+        def found(self) -> Literal[False]: ...
+        @property
+        def cam_from_world(self) -> None: ...
+        @property
+        def covariance(self) -> None: ...
 
 
 AnyCamera = Union[_core.Camera, str, Any]
@@ -175,7 +199,7 @@ class Localizer:
         return [Camera._of(camera) for camera in self._core.cameras()]
 
     def localize(self, image: ArrayLike, camera: AnyCamera, prior: Optional[ArrayLike] = None, orientation: int = 1,
-                 mask: Optional[ArrayLike] = None) -> Location:
+                 mask: Optional[ArrayLike] = None) -> Union[FoundLocation, NoLocation]:
         """Where an image was taken. The GIL is released meanwhile.
 
         :param image: H x W or H x W x 3 (BGR) uint8, as its file stores it, not turned as EXIF may ask; so are pose and pixels.
