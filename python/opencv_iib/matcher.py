@@ -17,6 +17,17 @@ Matches = tuple[tuple[Any, ...], ...]
 AT_ONCE = 512  # queries: with a million codes, less than a second on one core
 
 
+MAX_PADDED = 1 << 26  # neighbours that are answered with -1 where there are fewer
+
+
+def check_padding(queries: int, k: int, rows: int) -> None:
+    """:raises opencv_iib.error: as the C++ library, which sees a part of the queries alone, for a k of more than there are codes that would
+    fill the memory."""
+    if k > rows and queries * k > MAX_PADDED:
+        raise _core.error(f'k is {k}, but there are {rows} descriptors to find: ask for at most {max(rows, MAX_PADDED // queries)} for each '
+                          f'of {queries} queries')
+
+
 def _masks(masks: Any) -> list[np.ndarray]:
     """One for each image that was added, empty where all is allowed; or none."""
     if masks is None or isinstance(masks, np.ndarray):
@@ -126,6 +137,7 @@ class HierarchicalMatcher(CoreObject):
             number of the image as well.
         """
         queries, k, matcher = as_codes(queryDescriptors, 'descriptors'), integer(k, 'k'), self._on(trainDescriptors)
+        check_padding(len(queries), k, matcher.rows())
         parts = [matcher.knnMatchArrays(some, k, allowed)
                  for _, some, allowed in self._parts(queries, _masks(mask if masks is None else masks))]
         found = tuple(np.concatenate(arrays) for arrays in zip(*parts)) if len(parts) > 1 else parts[0]

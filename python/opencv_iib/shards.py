@@ -16,14 +16,13 @@ from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 
 import numpy as np
 
-from opencv_iib import _core
 from opencv_iib._arguments import Path, integer
 from opencv_iib._arrays import as_array
 from opencv_iib._files import only_writer
 from opencv_iib.mapped_index import MappedIndex
+from opencv_iib.matcher import check_padding
 
 Arrays = tuple[np.ndarray, np.ndarray]
-MAX_PADDED = 1 << 26  #: neighbours that are answered with -1 where there are fewer
 
 
 def write(folder: Path, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per_shard: int = 1 << 20,
@@ -122,9 +121,7 @@ def search(folder: Path, queries: Any, k: int = 5, client: Any = None) -> Arrays
     k, rows = integer(k, 'k'), index.rows()
     if client is None or index.segments() == 0 or k < 1:
         return index.search(queries, k)
-    if k > rows and len(queries) * k > MAX_PADDED:  # as in the C++ library
-        raise _core.error(f'k is {k}, but there are {rows} descriptors to find: ask for at most {max(rows, MAX_PADDED // len(queries))} for each '
-                          f'of {len(queries)} queries')
+    check_padding(len(queries), k, rows)
     wanted, k = k, max(min(k, rows), 1)
     search_shard = functools.partial(_search_shard, os.path.abspath(os.fspath(folder)), index.version(), queries, k)
     best = np.full((len(queries), k), -1), np.full((len(queries), k), -1, np.int32)

@@ -91,6 +91,13 @@ void bindMatcher(nb::module_& m)
             .def("getTrainDescriptors", &trainDescriptors)
             .def("radiusMatch", &radiusMatch, WithoutGil())
             .def("knnMatchArrays", &knnMatchArrays, WithoutGil())
+            .def("rows",
+                    [](const Matcher& self) {
+                        int64_t rows = 0;
+                        for (const cv::Mat& descriptors : self.getTrainDescriptors())
+                            rows += descriptors.rows;
+                        return rows;
+                    })
             .def("levelSizes", &Matcher::levelSizes)
             .def_prop_rw("mode", &Matcher::getMode, &Matcher::setMode)
             .def("setThresholds", &Matcher::setThresholds)
