@@ -9,7 +9,7 @@ import logging
 import os
 import sqlite3
 import sys
-from typing import Any, Callable, NoReturn, Optional, Sequence
+from typing import Any, Callable, Collection, Iterable, NoReturn, Optional, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,11 +32,12 @@ from opencv_iib.match_list import match_list
 from opencv_iib.measure import match_images
 
 STATUS = ('status: 0; 1 for an error; 2 for a mistake in the command line; 3 where nothing was found (no match, no pose, no image aligned or '
-          'localized), 4 where some images or pairs were; 130 after Ctrl-C')
+          'localized), 4 where some images or pairs were, or map left some out; 130 after Ctrl-C')
 CAMERA = 'MODEL,WIDTH,HEIGHT,PARAMS'
 
 
 class _Parser(argparse.ArgumentParser):
+    commands: Collection[str] = ()
 
     def error(self, message: str) -> NoReturn:
         """Instead of the usage: a line, as for other mistakes."""
@@ -57,11 +58,21 @@ def _pose(text: str) -> NDArray[np.float64]:
         raise argparse.ArgumentTypeError(str(e)) from None
 
 
+def _choice(parser: argparse.ArgumentParser, option: str, names: Iterable[str], case: Callable[[str], str] = str.upper, **more: Any) -> None:
+    """An option that is one of these names, in any case."""
+    known = list(names)
+
+    def chosen(text: str) -> str:
+        if case(text) not in known:
+            raise argparse.ArgumentTypeError(f'invalid choice: {text!r} (choose from {", ".join(known)})')
+        return case(text)
+    parser.add_argument(option, type=chosen, metavar=f'{{{",".join(known)}}}', **more)
+
+
 def _features(parser: argparse.ArgumentParser, points: int) -> None:
-    parser.add_argument('--detector', default=FeatureOptions.detector, choices=DETECTORS, type=str.upper,
-                        help='HessianDetector, or a detector of cv2 (%(default)s)')
+    _choice(parser, '--detector', DETECTORS, default=FeatureOptions.detector, help='HessianDetector, or a detector of cv2 (%(default)s)')
     parser.add_argument('--points', type=int, default=points, help='at most so many an image (%(default)s)')
-    parser.add_argument('--preset', default=FeatureOptions.preset, choices=sorted(preset_names()), type=str.upper, help='descriptor (%(default)s)')
+    _choice(parser, '--preset', sorted(preset_names()), default=FeatureOptions.preset, help='descriptor (%(default)s)')
     parser.add_argument('--orientation', action='store_true', help='turn what is described by its direction')
     _seen(parser)
 
@@ -85,7 +96,7 @@ def _call(function: Callable[..., Any], arguments: argparse.Namespace, **more: A
     return function(**vars(arguments), **more)
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser() -> _Parser:
     parser = _Parser(prog='opencv-iib', description=__doc__, epilog=STATUS)
     parser.add_argument('--version', action='version', version=f'opencv_iib {__version__}')
     commands = parser.add_subparsers(dest='command', required=True)
@@ -123,11 +134,11 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('reference')
     command.add_argument('images', nargs='+', help='of a plane, or from the same place: files, folders, patterns; those that are done stay')
     command.add_argument('--out', required=True, help='folder to write; older results there are replaced')
-    command.add_argument('--model', default='HOMOGRAPHY', choices=list(AlignmentModel.__members__), type=str.upper,
-                         help='the simplest one that is true of the images gives the smallest errors (%(default)s)')
-    command.add_argument('--format', choices=FORMATS, type=str.upper, help="of what is written (that of each image's file)")
+    _choice(command, '--model', AlignmentModel.__members__, default='HOMOGRAPHY',
+            help='the simplest one that is true of the images gives the smallest errors (%(default)s)')
+    _choice(command, '--format', FORMATS, help="of what is written (that of each image's file)")
     command.add_argument('--crop', action='store_true', help='write what all show, instead of what the reference shows')
-    command.add_argument('--interpolation', default='LINEAR', choices=INTERPOLATIONS, type=str.upper, help='(%(default)s)')
+    _choice(command, '--interpolation', INTERPOLATIONS, default='LINEAR', help='(%(default)s)')
     command.add_argument('--workers', type=int, help='threads (one a core)')
     _seen(command)
 
@@ -136,7 +147,7 @@ def _parser() -> argparse.ArgumentParser:
     command.add_argument('images', help='folder of images')
     command.add_argument('database', help='file to write, or to add new images to; an interrupted run goes on from NAME.partial')
     _features(command, FeatureOptions.points)
-    command.add_argument('--camera-model', default='SIMPLE_RADIAL', choices=CAMERA_MODELS, type=str.upper, help='(%(default)s)')
+    _choice(command, '--camera-model', CAMERA_MODELS, default='SIMPLE_RADIAL', help='(%(default)s)')
     command.add_argument('--focal', type=float, default=0, help='focal length in pixels, instead of EXIF')
     command.add_argument('--camera', metavar=CAMERA, help="COLMAP's name and parameters of the camera of all images")
     command.add_argument('--camera-of', action='append', default=[], metavar=f'FOLDER={CAMERA}', help='of the images below a folder; also several times')
@@ -145,7 +156,7 @@ def _parser() -> argparse.ArgumentParser:
                          help=f'{", ".join(PAIRS)}, or a file with two names a line (%(default)s)')
     command.add_argument('--neighbours', type=int, default=20, help='of sequential, retrieval and gps (%(default)s)')
     command.add_argument('--ratio', type=float, default=.9, help='ratio test beside the cross-check (%(default)s; 1: none)')
-    command.add_argument('--verify', default='auto', choices=VERIFIERS, type=str.lower, help='two-view geometry (%(default)s)')
+    _choice(command, '--verify', VERIFIERS, str.lower, default='auto', help='two-view geometry (%(default)s)')
     command.add_argument('--workers', type=int, help='threads (one a core)')
     command.add_argument('--scheduler', metavar='ADDRESS', help="have the workers of Dask's scheduler there do it")
     command.add_argument('--force', action='store_true', help='replace a database that is there')
@@ -189,6 +200,7 @@ def _parser() -> argparse.ArgumentParser:
     updating.add_argument('--force', action='store_true', help='replace a map that is in --out')
     for each, text in ((mapping, 'map lines too'), (localizing, 'refine poses by the lines of a map that was made with --lines')):
         each.add_argument('--lines', action='store_true', help=text + " (needs OpenCV's module line_descriptor)")
+    parser.commands = commands.choices
     return parser
 
 
@@ -248,7 +260,9 @@ def _hloc(arguments: argparse.Namespace) -> int:
 
 
 def _map(arguments: argparse.Namespace) -> int:
-    return _told(arguments.out, _call(localization.build, arguments))
+    counts = _call(localization.build, arguments)
+    _told(arguments.out, counts)
+    return SOME_FOUND if counts['left out'] else 0
 
 
 def _localize(arguments: argparse.Namespace) -> int:
@@ -265,6 +279,8 @@ def _localize_stream(arguments: argparse.Namespace) -> int:
     for option in ('out', 'imu', 'pictures', 'sequence'):
         if getattr(arguments, option):
             raise InvalidOption(f'--images - goes without --{option}')
+    if sys.stdin is None or sys.stdout is None:
+        raise InvalidOption('--images - needs standard input and output, and one is not open')
     for stream in (sys.stdin, sys.stdout):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(encoding=sys.getfilesystemencoding(), errors=sys.getfilesystemencodeerrors())  # a path may be any bytes
@@ -319,9 +335,11 @@ def _say(text: str, out: str = '') -> None:
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Runs a command; the exit status."""
     words = sys.argv[1:] if argv is None else argv
-    command = words[0] if words and words[0].isalpha() else 'opencv-iib'
+    command = 'opencv-iib'
     try:
-        arguments = _parser().parse_args(words)
+        parser = _parser()
+        command = next((word for word in words[:1] if word in parser.commands), command)
+        arguments = parser.parse_args(words)
         _cv2_error()  # the import of cv2 swallows Ctrl-C
         end_of_start()
         command, run, silent = (vars(arguments).pop(name) for name in ('command', 'run', 'quiet'))

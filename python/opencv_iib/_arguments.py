@@ -14,7 +14,15 @@ class InvalidOption(ValueError):
 
 
 class MissingFile(InvalidOption, FileNotFoundError):
-    """An option names a file that is not there."""
+    """An option names a file that is not there, or a folder."""
+
+
+class TakenFile(InvalidOption, FileExistsError):
+    """What would be written is read, or written twice."""
+
+
+class UnusableName(InvalidOption, OSError):
+    """An option names what cannot be read or written, whatever its rights, such as a folder in place of a file."""
 
 
 def integer(value: Any, name: str, bits: int = 32) -> int:
@@ -28,11 +36,16 @@ def integer(value: Any, name: str, bits: int = 32) -> int:
     return whole
 
 
+def sequence(values: Iterable[Any], name: str, what: str) -> list[Any]:
+    """:raises TypeError: for what is none, and for a text, which is one of letters."""
+    if isinstance(values, (str, bytes, os.PathLike)) or not hasattr(values, '__iter__'):
+        raise TypeError(f'{name}: a sequence of {what} is needed, not {values!r}')
+    return list(values)
+
+
 def integers(values: Iterable[Any], name: str, bits: int = 32) -> list[int]:
     """A list of them."""
-    if isinstance(values, (str, bytes)) or not hasattr(values, '__iter__'):
-        raise TypeError(f'{name}: a sequence of integers is needed, not {values!r}')
-    return [integer(value, name, bits) for value in values]
+    return [integer(value, name, bits) for value in sequence(values, name, 'integers')]
 
 
 def number(value: Any, name: str) -> float:

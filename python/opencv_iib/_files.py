@@ -9,8 +9,8 @@ from contextlib import contextmanager, suppress
 from typing import Iterable, Iterator, Optional
 
 from opencv_iib import _core
-from opencv_iib._arguments import Path
-from opencv_iib._streams import is_open_file, write_to_open_file
+from opencv_iib._arguments import MissingFile, Path, TakenFile, UnusableName
+from opencv_iib._streams import check_open_file, is_open_file, write_to_open_file
 
 PART = '.iib-'  #: how the folder's name begins that results are written to, within that of the results
 RECORD = '.made-by-opencv-iib'  #: a file in both: which command has written which files, of how many bytes; all others are the user's
@@ -19,7 +19,7 @@ RECORD = '.made-by-opencv-iib'  #: a file in both: which command has written whi
 def output_file(path: str) -> str:
     """Where a file is written: at the end of a link, also if nothing is there yet.
 
-    :raises OSError: for a folder, within a folder that is missing, and for a name that is too long.
+    :raises InvalidOption: for a folder, within a folder that is missing, and for a name that is too long.
     """
     target = os.path.realpath(path)
     try:
@@ -27,11 +27,11 @@ def output_file(path: str) -> str:
     except FileNotFoundError:
         pass
     except OSError as e:
-        raise type(e)(f'{path} cannot be written: {e.strerror}') from None
+        raise UnusableName(f'{path} cannot be written: {e.strerror}') from None
     if os.path.isdir(target):
-        raise IsADirectoryError(f'{path or target} is a folder: give the name of a file')
+        raise UnusableName(f'{path or target} is a folder: give the name of a file')
     if not os.path.isdir(os.path.dirname(target)):
-        raise FileNotFoundError(f'{path}: there is no folder {os.path.dirname(target)}')
+        raise MissingFile(f'{path}: there is no folder {os.path.dirname(target)}')
     return target
 
 
@@ -50,16 +50,21 @@ def is_in(path: Path, folder: Path) -> bool:
 def check_outputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
     """What can be told before there is work to lose.
 
-    :raises FileExistsError: for a file to be written that is read, by whatever name, or that is written twice.
-    :raises OSError: as output_file, and where no file can be made.
+    :raises TakenFile: for a file to be written that is read, by whatever name, or that is written twice.
+    :raises InvalidOption: as output_file.
+    :raises OSError: where no file can be made, or nothing written to what is open.
     """
     taken = {path: 'an input' for path in inputs}
     for path in outputs:
         for other, what in taken.items():
             if is_same(path, other):
-                raise FileExistsError(f'{path} is {what} too: give what is written a name of its own')
+                raise TakenFile(f'{path} is {what} too: give what is written a name of its own')
         taken[path] = 'another output'
-        target = '' if is_open_file(os.fspath(path)) else output_file(os.fspath(path))
+        target = ''
+        if is_open_file(os.fspath(path)):
+            check_open_file(os.fspath(path))
+        else:
+            target = output_file(os.fspath(path))
         if target and (os.path.isfile(target) or not os.path.exists(target)):
             try:
                 _core.WholeFile(target).discard()
@@ -67,11 +72,35 @@ def check_outputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
                 raise OSError(str(e)) from None
 
 
-def check_folder(out: Path, inputs: Iterable[Path]) -> None:
-    """:raises FileExistsError: for a folder of results, which are replaced, with something in it that is read."""
+def check_folder(out: Path, inputs: Iterable[Path] = ()) -> None:
+    """Of a folder to be written, which is made if it is missing, as are those that it is in.
+
+    :raises TakenFile: for one whose files are replaced, with something in it that is read.
+    :raises UnusableName: where it or one that it would be in is a file.
+    """
+    above = os.path.realpath(out)
+    while not os.path.lexists(above) and os.path.dirname(above) != above:
+        above = os.path.dirname(above)
+    if not os.path.isdir(above):
+        raise UnusableName(f'{os.fspath(out)} cannot be a folder: {above} is a file')
     for path in inputs:
         if is_in(path, out):
-            raise FileExistsError(f'{path} is in {out}, whose files would be replaced: choose another folder')
+            raise TakenFile(f'{path} is in {out}, whose files would be replaced: choose another folder')
+
+
+def check_images(*paths: Path) -> None:
+    """Of files that are given by their names. :raises InvalidOption: for one that is not there."""
+    for path in paths:
+        if not os.path.exists(os.fspath(path)):  # which takes integers for open files
+            raise MissingFile(f'there is no file {os.fspath(path)}')
+        if os.path.isdir(path):
+            raise UnusableName(f'{os.fspath(path)} is a folder: give the name of an image')
+
+
+def check_is_folder(path: Path) -> None:
+    """:raises MissingFile: for one that is not there."""
+    if not os.path.isdir(os.fspath(path)):
+        raise MissingFile(f'there is no folder {os.fspath(path)}')
 
 
 def write_whole(path: str, content: bytes) -> None:

@@ -8,7 +8,7 @@ from typing import Any, Callable, Iterable, Iterator, Optional, TypeVar, Union
 
 import numpy as np
 
-from opencv_iib._arguments import InvalidOption
+from opencv_iib._arguments import InvalidOption, integer
 
 T = TypeVar('T')
 R = TypeVar('R')
@@ -19,7 +19,7 @@ MAX_THREADS = 1024
 
 def thread_count(workers: Optional[int]) -> int:
     """As many, or one a core for None. :raises InvalidOption: for less than 1, or more than a system can have."""
-    if workers is not None and not 1 <= workers <= MAX_THREADS:
+    if workers is not None and not 1 <= integer(workers, 'workers', 64) <= MAX_THREADS:
         raise InvalidOption(f'workers is {workers}: it must be 1 to {MAX_THREADS}')
     return workers or os.cpu_count() or 1
 

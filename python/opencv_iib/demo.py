@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, Optional, Sequence
 import numpy as np
 
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._files import check_outputs
+from opencv_iib._files import check_images, check_outputs
 from opencv_iib._images import Masks, check_picture, import_cv2, read_with_orientation, write_picture
 from opencv_iib.colmap.features import FeatureOptions, Features, make_detector
 from opencv_iib.functions import match
@@ -42,8 +42,10 @@ def demo(image_a: Path, image_b: Path, out: Path, options: FeatureOptions = Feat
     :return: of IIB first.
     :raises ValueError: for a file that is no image, or one that cannot be written.
     :raises FileExistsError: for an image as the picture to write.
+    :raises FileNotFoundError: for an image that is not there.
     """
     options.check()
+    check_images(image_a, image_b)
     names, masked = [os.path.basename(os.fspath(path)) for path in (image_a, image_b)], Masks(options.mask)
     check_outputs([out], (image_a, image_b, *masked.check(names)))
     check_picture(out)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
+from opencv_iib._arguments import sequence
 from opencv_iib._arrays import as_array, as_matrix
 from opencv_iib._types import KeyPointLike, keypoint_type
 
@@ -25,16 +26,20 @@ def keypoints_to_array(keypoints: Iterable[KeyPointLike]) -> NDArray[np.float32]
 
     Octaves and class ids beyond 2**24 are rounded, since they are floats here.
     """
-    if not isinstance(keypoints, (list, tuple)):
-        keypoints = list(keypoints)
-    return _core.readKeyPoints(keypoints)
+    keypoints = sequence(keypoints, 'keypoints', 'objects like cv2.KeyPoint')
+    try:
+        return _core.readKeyPoints(keypoints)
+    except (AttributeError, TypeError) as e:
+        raise type(e)(f'keypoints: a sequence of objects like cv2.KeyPoint is needed ({e})') from None
 
 
 def array_to_keypoints(rows: ArrayLike) -> tuple[Any, ...]:
     """What :func:`keypoints_to_array` gave, as cv2.KeyPoint if cv2 is there, else :class:`opencv_iib.KeyPoint`."""
-    make = keypoint_type()
+    array, make = as_array(rows, 'keypoints').astype(np.float32, copy=False), keypoint_type()
+    if array.size and array.shape[1:] != (7,):
+        raise ValueError(f'keypoints: an array of N x 7 is needed, as keypoints_to_array gives it, not of {" x ".join(map(str, array.shape))}')
     return tuple(make(x, y, size, angle, response, int(octave), int(class_id))
-                 for x, y, size, angle, response, octave, class_id in np.asarray(rows, np.float32).tolist())
+                 for x, y, size, angle, response, octave, class_id in array.reshape(-1, 7).tolist())
 
 
 def as_rows(keypoints: Any) -> NDArray[np.float32]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from opencv_iib import __version__, error
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._files import check_outputs, only_writer, output_file, write_whole
+from opencv_iib._files import check_folder, check_is_folder, check_outputs, only_writer, output_file, write_whole
 from opencv_iib._images import Masks, check_sizes, find_images
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
@@ -36,8 +36,6 @@ class _Folder(contextlib.AbstractContextManager[Any]):
     """A CSV file a pair, ``A/B.csv``, and a table of all, to which each pair adds a line when it is done."""
 
     def __init__(self, path: str) -> None:
-        if os.path.isfile(path):
-            raise InvalidOption(f'{path} is a file: give the name of a folder, or one in .h5')
         self._path = path = os.path.realpath(path)
         table = os.path.join(path, TABLE)
         os.makedirs(path, exist_ok=True)
@@ -150,15 +148,16 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
     options.check()
     crew, masks, features, folder, out = Threads(thread_count(workers)), Masks(options.mask), Features(options), os.fspath(images), os.fspath(out)
     lens = None if camera is None else as_camera(camera)
-    if not os.path.isdir(folder):
-        raise FileNotFoundError(f'there is no folder {folder}')
+    check_is_folder(folder)
     names = find_images(folder)
     listed = {frozenset(pair): pair for pair in from_file(pairs, {name: number for number, name in enumerate(names)})}
     used = {names[number] for pair in listed.values() for number in pair}
     masked = masks.check(sorted(used))
-    check_sizes(folder, sorted(used), masks, lens)
     if out.lower().endswith(HDF5):
         check_outputs([out], (pairs, *masked, *(os.path.join(folder, name) for name in used)))
+    else:
+        check_folder(out)
+    check_sizes(folder, sorted(used), masks, lens)
     if len({pair_name(names[a], names[b]) for a, b in listed.values()}) < len(listed):
         raise InvalidOption(f'{os.fspath(pairs)}: two pairs would have one name, with - in place of /')
     settings = json.dumps([*map(str, vars(options).values()), str(lens), __version__])

@@ -123,6 +123,8 @@ class HierarchicalMatcher(CoreObject):
         if isinstance(trainDescriptors, (int, float, np.number)):
             return self.radiusMatch(queryDescriptors, None, float(trainDescriptors), mask, compactResult, masks)
         queries, distance = as_codes(queryDescriptors, 'descriptors'), number(maxDistance, 'maxDistance')
+        if not distance > 0:
+            raise _core.error(f'maxDistance is {distance:g}: it must be more than 0')
         matcher, matches = self._on(trainDescriptors), []
         for first, some, allowed in self._parts(queries, _masks(mask if masks is None else masks)):
             found = matcher.radiusMatch(some, distance, allowed)

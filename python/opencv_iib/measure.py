@@ -10,8 +10,8 @@ from typing import Any, NamedTuple, Optional, Sequence, Union
 import numpy as np
 from numpy.typing import NDArray
 
-from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._files import check_outputs, write_whole
+from opencv_iib._arguments import InvalidOption, Path, sequence
+from opencv_iib._files import check_images, check_outputs, write_whole
 from opencv_iib._images import Masks, check_picture, import_cv2, read_with_orientation, write_picture
 from opencv_iib._upright import Turn, upright
 from opencv_iib.colmap.features import FeatureOptions, Features
@@ -122,11 +122,14 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
         :meth:`opencv_iib.localization.Localizer.localize` takes it.
     :raises ValueError: for a file that is no image, or a camera of another size.
     :raises FileExistsError: for an image as a file to write.
+    :raises FileNotFoundError: for an image that is not there.
     """
     options.check()
+    cameras = sequence(cameras, 'cameras', 'cameras')
     if len(cameras) > 2:
         raise InvalidOption(f'{len(cameras)} cameras for two images')
     masks, features, paths = Masks(options.mask), Features(options), [os.fspath(image_a), os.fspath(image_b)]
+    check_images(*paths)
     masked = masks.check([os.path.basename(path) for path in paths])
     check_outputs([path for path in (out, picture) if path is not None], (*paths, *masked))
     if picture is not None:

@@ -39,8 +39,10 @@ def write(folder: Path, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per
     :raises FileExistsError: if the folder is there, or ``folder.partial`` is a link.
     :raises BlockingIOError: if another process is writing it.
     """
-    if rows_per_shard < 1:
+    if integer(rows_per_shard, 'rows_per_shard', 64) < 1:
         raise ValueError(f'rows_per_shard is {rows_per_shard}: at least 1 is needed')
+    if not isinstance(codes, np.ndarray) and not hasattr(codes, '__iter__'):
+        raise TypeError(f'codes: an array, or a sequence of arrays is needed, not {codes!r}')
     folder = os.path.realpath(folder)  # links cannot be replaced
     if os.path.exists(folder) and (not os.path.isdir(folder) or os.listdir(folder)):
         raise FileExistsError(f'{folder} is there already: choose another folder, or add to it with MappedIndex')
@@ -55,13 +57,18 @@ def write(folder: Path, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per
 
 def _images(codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per_shard: int) -> Iterator[np.ndarray]:
     if isinstance(codes, np.ndarray):
-        if codes.ndim != 2:
-            raise ValueError(f'codes: rows x bytes are needed, not an array of {codes.ndim} dimensions')
+        _check_rows(codes)
         for first in range(0, max(len(codes), 1), rows_per_shard):
             yield as_array(codes[first:first + rows_per_shard], 'codes')
     else:
         for image in codes:
-            yield as_array(image, 'codes')
+            yield _check_rows(as_array(image, 'codes'))
+
+
+def _check_rows(codes: np.ndarray) -> np.ndarray:
+    if codes.ndim != 2:
+        raise ValueError(f'codes: rows x bytes are needed, not an array of {codes.ndim} dimensions')
+    return codes
 
 
 def _write(folder: str, images: Iterator[np.ndarray], rows_per_shard: int,

@@ -307,13 +307,13 @@ class Mistakes(Collection):
         small = self.folder / 'small.png'
         cv2.imwrite(str(small), np.zeros((1, 1), np.uint8))
         (self.folder / 'other.db.partial').write_bytes(b'junk' * 1000)
-        for wrong in ([self.images / 'none', 'x.db'], [self.images, self.folder / 'other.db']):
-            self.check_error('', 'colmap', *wrong)
+        self.check_mistake('there is no folder', 'colmap', self.images / 'none', 'x.db')
+        self.check_error('of an unfinished run', 'colmap', self.images, self.folder / 'other.db')
         for wrong in (['--ratio', '0'], ['--neighbours', '-1'], ['--workers', '0'], ['--focal', '-3'], ['--focal', 'nan']):
             self.check_mistake(wrong[0][2:], 'colmap', self.images, 'x.db', *wrong)
         self.check_error('', 'demo', small, small)
         before = small.read_bytes()
-        self.check_error('is an input too', 'colmap', self.images, small, '--force', '--mask', small)
+        self.check_mistake('is an input too', 'colmap', self.images, small, '--force', '--mask', small)
         self.assertEqual(small.read_bytes(), before)
 
     def test_paths_that_are_not_utf8(self):

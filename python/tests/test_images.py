@@ -2,6 +2,7 @@
 import os
 import struct
 import tempfile
+import warnings
 import zlib
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from collection import Collection
 from opencv_iib.colmap import FeatureOptions
 from opencv_iib.colmap.features import DETECTORS, Features, to_colmap
 from opencv_iib._exif import exif_focal_length, exif_orientation, gps_place
-from opencv_iib._images import read_colour, read_grey
+from opencv_iib._images import in_8_bits, read_colour, read_grey
 from support import cv2, texture
 
 
@@ -68,6 +69,16 @@ class Files(Collection):
         holed[:9] = np.nan
         file.write_bytes(encoded(holed, '.tif'))
         self.assertEqual((read_grey(file)[:9].max(), read_grey(file)[9:].max()), (0, 255))
+        for values in ((1e30, np.inf), (3e38, -3e38), (-np.inf, np.nan)):
+            wild = grey.astype(np.float32)
+            wild[5, 5:7] = values
+            file.write_bytes(encoded(wild, '.tif'))
+            wide = np.where(grey < 99, np.float32(values[0]), np.float32(values[1]))
+            with warnings.catch_warnings():
+                warnings.simplefilter('error')
+                np.testing.assert_array_equal(np.delete(read_grey(file), 5, 0), np.delete(grey, 5, 0))
+                if values[0] == 3e38:
+                    np.testing.assert_array_equal(in_8_bits(wide, False), np.where(grey < 99, 255, 0))
         file.write_bytes(encoded(np.full((40, 40), np.nan, np.float32), '.tif'))
         with self.assertRaisesRegex(ValueError, 'other: the image holds no finite number'):
             read_colour(file)

@@ -181,11 +181,11 @@ class Mistakes(Options):
         (self.folder / 'link.csv').symlink_to('images/a.png')
         for out, option in (('imu.csv', ('--imu', self.folder / 'imu.csv')), ('mask.csv', ('--mask', self.folder / 'mask.csv')), ('link.csv', ())):
             (self.folder / 'imu.csv').write_text('1,0,0,0,0,0,9.81\n')
-            self.check_error('is an input too', 'localize', '--map', self.map, '--images', self.images, '--out', self.folder / out, *option)
+            self.check_mistake('is an input too', 'localize', '--map', self.map, '--images', self.images, '--out', self.folder / out, *option)
         self.assertEqual(self.localize('--pictures')[0], 0)
         masks = self.out / 'matches'
         os.rename(masks / 'a.png', masks / 'a.png.png')
-        self.check_error('is in .*, whose files', 'localize', '--map', self.map, '--images', self.images, '--out', self.out, '--mask', masks)
+        self.check_mistake('is in .*, whose files', 'localize', '--map', self.map, '--images', self.images, '--out', self.out, '--mask', masks)
 
     def test_a_camera_or_mask_of_another_size_leaves_good_results(self):
         self.image('a.png')

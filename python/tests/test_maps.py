@@ -69,6 +69,32 @@ class Maps(OnWall):
         self.assertEqual(run_command('update', '--map', self.map, '--images', self.dark, '--camera', CAMERA, '--mask', masks, '--max-size', '300',
                                      '--out', self.path('new'))[0], 0)
 
+    def test_images_that_are_not_those_of_the_model_are_left_out(self):
+        images, model, masks, out = (self.path(name) for name in ('images', 'model', 'masks', 'map'))
+        shutil.copytree(self.images, images)
+        os.makedirs(masks)
+        write_model(model, {**self.poses, **dict.fromkeys(('gone.png', 'small.png', 'damaged.png', 'a folder.png', 'locked.png', 'masked.png'), np.eye(4))})
+        for name in ('small.png', 'masked.png', 'locked.png'):
+            shutil.copy(os.path.join(images, '0.png'), os.path.join(images, name))
+        cv2.imwrite(os.path.join(images, 'small.png'), np.zeros((240, 200), np.uint8))
+        cv2.imwrite(os.path.join(masks, 'masked.png.png'), np.ones((24, 20), np.uint8))
+        Path(images, 'damaged.png').write_bytes(b'\x89PNG')
+        os.makedirs(os.path.join(images, 'a folder.png'))
+
+        def opened(path, *arguments, real=open, **more):
+            if os.path.basename(path) == 'locked.png':
+                raise PermissionError(13, 'Permission denied', path)
+            return real(path, *arguments, **more)
+        with mock.patch('opencv_iib._files.open', opened, create=True):
+            status, told, lines = run_command('map', '--model', model, '--images', images, '--out', out, '--points', '300', '--mask', masks)
+        self.assertEqual(status, 4, lines)
+        self.assertRegex(told, r'6 images, \d+ points, 6 left out')
+        for line in ('gone.png: there is no such file', 'small.png: the image has 200 x 240 pixels and its camera 320 x 240',
+                     'damaged.png: the image is damaged or cut off', 'a folder.png: not a file', 'locked.png: Permission denied',
+                     r'masked.png: its mask .* has 20 x 24 pixels, and the image 320 x 240'):
+            self.assertRegex(lines, f'(?m)^{line}: left out of the map$')
+        self.check(Localizer(out).localize(self.grey(), CAMERA))
+
     def test_larger_images_are_reduced_and_keep_their_cameras(self):
         out = self.path('map')
         arguments = 'map', '--model', self.model, '--images', self.images, '--out', out, '--points', '400', '--max-size'
@@ -105,7 +131,7 @@ class Maps(OnWall):
             return read(path)
         with mock.patch.object(maps, 'decode_grey', slowly), redirect_stderr(io.StringIO()):
             self.assertLess(seconds_until_interrupt(lambda: build(model, folder, out, workers=1), .5), 2)
-        self.assertEqual(self.localize(self.path('out'), map=out)[0], 1)  # there is no map
+        self.assertEqual(self.localize(self.path('out'), map=out)[0], 2)  # there is no map
 
     def test_cameras_of_a_map_that_agree_are_one(self):
         model, made, out = self.path('model'), self.path('map'), self.path('out')

@@ -8,7 +8,11 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import HessianDetector, HierarchicalMatcher, IIB, MappedIndex, NormalizedDetector
-from opencv_iib.localization import Camera, Localizer, Location, smooth_poses
+from opencv_iib import shards
+from opencv_iib.align import align
+from opencv_iib.colmap import FeatureOptions, Options, build_database
+from opencv_iib.localization import Camera, Localizer, Location, build, localize_images, smooth_poses, update
+from opencv_iib.measure import match_images
 from support import InFolder, cv2, grid, texture
 
 
@@ -98,6 +102,42 @@ class Texts(InFolder):
         self.expect(TypeError, "locations: what Localizer.localize finds is needed, not 'x'", lambda: smooth_poses([1], ['x'], np.zeros((1, 7))))
         self.expect(TypeError, 'readings', lambda: smooth_poses([], [], 'x'))
         self.expect(ValueError, 'come together', lambda: Location(np.eye(4)))
+
+    def test_plain_values(self):
+        codes, readings = np.zeros((5, 8), np.uint8), np.zeros((1, 7))
+        for text, *arguments in (('rows_per_shard: an integer', codes, (3, 5)), ('rows_per_shard: an integer', codes, 1.5), ('codes: an array, or', None),
+                                 ('codes: an array of numbers', 'x'), ('levelSizes: a sequence', codes, 5, 'x')):
+            self.expect(TypeError, text, lambda: shards.write(self.folder / 'sh', *arguments))
+        for flat in (codes[0], [codes[0]]):
+            self.expect(ValueError, 'codes: rows x bytes are needed', lambda: shards.write(self.folder / 'sh', flat))
+        self.assertEqual(shards.write(self.folder / 'sh', codes).rows(), 5)
+        for workers in ('x', 2.5):
+            for call in (lambda: build(self.folder, self.folder, self.folder / 'map', workers=workers),
+                         lambda: update(self.folder, self.folder, workers=workers),
+                         lambda: localize_images(self.folder, self.folder, self.folder / 'out', workers=workers),
+                         lambda: align(self.folder, [], self.folder / 'out', workers=workers),
+                         lambda: build_database(self.folder, self.folder / 'x.db', workers=workers)) if cv2 is not None else ():
+                self.expect(TypeError, f'workers: an integer is needed, not {workers!r}', call)
+        self.expect(TypeError, 'keypoints: an array of numbers', lambda: opencv_iib.array_to_keypoints('x'))
+        self.expect(ValueError, 'N x 7 is needed, .* not of 3 x 2', lambda: opencv_iib.array_to_keypoints(np.zeros((3, 2))))
+        for wrong in ([1], 'x', None, 3, [None]):
+            self.expect((TypeError, AttributeError), 'keypoints: a sequence of objects like cv2.KeyPoint is needed', lambda: opencv_iib.keypoints_to_array(wrong))
+        self.expect(TypeError, 'locations: a sequence', lambda: smooth_poses([1], None, readings))
+        self.expect(TypeError, 'a pose: an array of numbers', lambda: smooth_poses([1], [Location()], readings, 'x'))
+        for wrong in (3, None):
+            self.expect(TypeError, 'expected str, bytes or os.PathLike', lambda: update(wrong, self.folder))
+            self.expect(TypeError, 'expected str, bytes or os.PathLike', lambda: update(self.folder, wrong))
+        for distance in (float('nan'), -1):
+            self.expect(opencv_iib.error, 'maxDistance is .*: it must be more than 0', lambda: HierarchicalMatcher().radiusMatch(codes, codes, distance))
+        for field, wrong in (('points', 2.5), ('max_size', 'x')):
+            self.expect(TypeError, field + ': an integer', FeatureOptions(**{field: wrong}).check)
+        for field, wrong in (('focal', 'x'), ('neighbours', 1.5), ('ratio', None), ('camera_of', 'x=y')) if cv2 is not None else ():
+            self.expect(TypeError, f'{field}: .* is needed, not {wrong!r}', Options(**{field: wrong}).check)
+        for wrong in ({'verify': 3}, {'camera_model': None}, {'camera_of': [3]}) if cv2 is not None else ():
+            self.expect(ValueError, 'must be|there are', Options(**wrong).check)
+        (self.folder / 'a.png').touch()
+        self.expect(TypeError, 'images: a sequence of paths', lambda: align(self.folder / 'a.png', 'x', self.folder / 'out'))
+        self.expect(TypeError, 'cameras: a sequence of cameras', lambda: match_images('a', 'b', cameras='PINHOLE,9,9,9,9,4,4'))
 
     def test_files_that_nest_without_end(self):
         deep = 100000

@@ -14,6 +14,8 @@ from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib import match_list
 from opencv_iib.colmap import FeatureOptions, hloc, pipeline
 from opencv_iib._exif import gps_place
+from opencv_iib._images import find_images
+from opencv_iib.colmap.database import MAX_IMAGE_ID
 from opencv_iib.measure import match_images
 from support import optional, run_command
 
@@ -99,7 +101,7 @@ class Lists(Collection):
         self.match(out, 'a.png broken.png\nb.png broken.png\na.png b.png\n', 4)
         (out / 'mine').write_text('precious')
         self.check_error('holds other files', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.images)
-        self.check_mistake('is a file: give the name of a folder', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.folder / 'pairs.txt')
+        self.check_mistake('cannot be a folder: .*pairs.txt is a file', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.folder / 'pairs.txt')
         self.check_mistake('its camera has 9 x 9 pixels', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images,
                            '--out', self.folder / 'new', '--camera', 'PINHOLE,9,9,5,5,4,4')
         self.assertFalse((self.folder / 'new').exists())
@@ -131,11 +133,30 @@ class Pairs(Collection):
         self.assertEqual(list(pair_lists.sequential(4, 2)), [(0, 1), (0, 2), (1, 2), (1, 3), (2, 3)])
         self.assertEqual(list(pair_lists.distinct([(1, 2), (2, 1), (0, 1), (1, 2)])), [(1, 2), (0, 1)])
 
+    def test_names_are_in_the_order_of_people(self):
+        names = ['more/im1.png', 'more/im2.png', 'more/im10.png', 'more/im010.png']
+        for name in names:
+            shutil.copy(self.images / 'a.png', self.images / name)
+        for name in ('a.png', 'b.png', 'more/c.png'):
+            (self.images / name).unlink()
+        ordered = [*names[:2], names[3], names[2]]
+        self.assertEqual(find_images(self.images), ordered)
+        self.build(pairs='sequential', neighbours=1)
+        self.assertEqual([name for name, in self.query('SELECT name FROM images ORDER BY image_id')], ordered)
+        self.assertEqual([divmod(pair, MAX_IMAGE_ID) for pair, in self.query('SELECT pair_id FROM matches')], [(1, 2), (2, 3), (3, 4)])
+        shutil.copy(self.images / names[0], self.images / 'more/im3.png')
+        self.build(pairs='sequential', neighbours=1)
+        self.assertEqual({divmod(pair, MAX_IMAGE_ID) for pair, in self.query('SELECT pair_id FROM matches')}, {(1, 2), (2, 3), (2, 5), (3, 5), (3, 4)})
+
     def test_lists(self):
         self.assertEqual(self.build_listed('# pairs\na.png more/c.png\n')['pairs'], 1)
         with mock.patch.object(pipeline, 'describe_images', side_effect=AssertionError), \
                 self.assertRaisesRegex(ValueError, 'pairs.txt:1: not the names of two images'):
             self.build_listed('a.png nothing.png\n')
+        self.listing.write_bytes(b'a.png b.png\ncaf\xe9.png a.png\n')
+        for arguments in (['colmap', self.images, self.folder / 'x.db', '--pairs', self.listing],
+                          ['match', '--images', self.images, '--out', self.folder / 'x', '--pairs', self.listing]):
+            self.check_error('pairs.txt:2: not UTF-8', *arguments)
         (self.images / 'broken.png').write_bytes(b'no image')
         self.assertEqual(self.build_listed('a.png broken.png\nb.png a.png\n')['pairs'], 1)
 

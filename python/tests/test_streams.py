@@ -45,6 +45,11 @@ class Telling(unittest.TestCase):
         for stream in streams[2:]:
             stream.close()
 
+    def test_a_name_of_two_lines_is_told_on_one(self):
+        with mock.patch('sys.stderr', io.StringIO()) as stream:
+            _streams.note('a\nb.png: what\r\nelse')
+        self.assertEqual(stream.getvalue(), 'a\\nb.png: what\\nelse\n')
+
     def test_letters_that_an_encoding_lacks(self):
         stream = io.TextIOWrapper(io.BytesIO(), 'cp1252')
         _streams.put('caf\xe9 \u65e5 \udce9\n', stream)
@@ -111,6 +116,17 @@ class Commands(InFolder):
         self.assertEqual(done.returncode, 1)
         self.assertRegex(done.stderr.decode(), r'^match: - cannot be written: No space left[^\n]*\n$')
 
+    @unittest.skipIf(shutil.which('bash') is None, 'no bash')
+    def test_what_is_not_open_is_told_before_work(self):
+        for out, closed in (('-', '>&-'), ('/dev/stdout', '>&-'), ('/dev/stderr', '2>&-'), ('/dev/fd/77', ''), ('/dev/fd/5', '5</dev/null'),
+                            ('/dev/fd/99999999999', '')):
+            done = subprocess.run(['bash', '-c', f'{sys.executable} -m opencv_iib match {self.a} {self.a} --out {out} {closed}'], capture_output=True)
+            self.assertEqual((done.returncode, done.stdout), (2, b''), out)
+            if '2>' not in closed:
+                self.assertEqual(done.stderr.decode(), f'match: {out} cannot be written: it is not open\n')
+        done = subprocess.run(['bash', '-c', f'{sys.executable} -m opencv_iib localize --map {self.folder} --images - <&-'], capture_output=True)
+        self.assertEqual((done.returncode, done.stderr), (2, b'localize: --images - needs standard input and output, and one is not open\n'))
+
     @unittest.skipUnless(hasattr(sys, 'orig_argv') and os.name == 'posix', 'no words of the command, or no signals')
     def test_ctrl_c_while_it_begins(self):
         environment = {**os.environ, 'PYTHONPATH': os.pathsep.join([str(self.folder), os.environ.get('PYTHONPATH', '')])}
@@ -141,7 +157,8 @@ class Mistakes(InFolder):
     def test_in_options_end_with_2(self):
         place = ['--images', self.folder, '--out', self.folder / 'out']
         for told, *arguments in (
-                ('invalid choice', 'nothing'), ('workers is 3000000000', 'map', '--model', 'm', *place, '--workers', '3000000000'),
+                ("opencv-iib: argument command: invalid choice: 'nothing'", 'nothing'), ("--model: invalid choice: 'x' (choose from TRANSLATION, ",
+                 'align', 'a', 'b', '--out', 'c', '--model', 'x'), ('workers is 3000000000', 'map', '--model', 'm', *place, '--workers', '3000000000'),
                 ('points is 3000000000', 'map', '--model', 'm', *place, '--points', '3000000000'),
                 ('points is 0', 'map', '--model', 'm', *place, '--points', '0'), ("invalid int value: 'many'", 'match', 'a', 'b', '--points', 'many'),
                 ('points is -1', 'match', 'a', 'b', '--points', '-1'), ('max_size is 5', 'demo', 'a', 'b', '--max-size', '5'),
@@ -154,7 +171,45 @@ class Mistakes(InFolder):
             with self.subTest(arguments):
                 status, out, errors = run_command(*arguments)
                 self.assertEqual((status, out), (2, ''))
-                self.assertRegex(errors, rf'^(opencv-iib|{arguments[0]}): [^\n]*{re.escape(told)}[^\n]*\n$')
+                self.assertRegex(errors, rf'^(?=[^\n]*{re.escape(told)})(opencv-iib|{arguments[0]}): [^\n]*\n$')
+
+    @unittest.skipIf(cv2 is None, 'no cv2')
+    def test_files_that_cannot_be_meant_end_with_2_before_work(self):
+        image, folder = self.folder / 'a.png', self.folder / 'images'
+        folder.mkdir()
+        cv2.imwrite(str(image), texture(60, 60))
+        shutil.copy(image, folder)
+        out, gone, inside = self.folder / 'out', self.folder / 'gone', image / 'x'
+        localize, there = ('localize', '--map', folder), ['--images', folder]
+        files = set(self.folder.rglob('*'))
+        for told, *arguments in (
+                ('there is no file', 'match', image, gone), ('there is no file', 'match', gone, image), ('is a folder', 'match', image, folder),
+                ('there is no file', 'demo', gone, image), ('is a folder', 'demo', image, folder), ('an input too', 'demo', image, image, '--out', image),
+                ('an input too', 'match', image, image, '--out', image), ('another output', 'match', image, image, '--out', out, '--picture', out),
+                ('there is no folder', 'match', image, image, '--out', gone / 'x.csv'), ('is a folder', 'match', image, image, '--out', folder),
+                ('there is no folder', 'match', '--pairs', image, '--images', gone, '--out', out),
+                ('there is no file', 'align', gone, image, '--out', out), ('there is no file', 'align', image, gone, '--out', out),
+                ('no image is called', 'align', image, folder / '*.jpg', '--out', out), ('is a folder', 'align', folder, image, '--out', out),
+                ('is a file', 'align', image, folder, '--out', image), ('is a file', 'align', image, folder, '--out', inside),
+                ('would be replaced', 'align', image, folder / 'a.png', '--out', folder),
+                ('there is no folder', 'colmap', gone, self.folder / 'x.db'), ('there is no folder', 'colmap', folder, gone / 'x.db'),
+                ('is a folder', 'colmap', folder, folder), ('an input too', 'colmap', folder, folder / 'a.png', '--force'),
+                ('there is no database', 'hloc', gone, self.folder / 'f.h5', self.folder / 'm.h5', self.folder / 'p'),
+                ('there is no folder', 'hloc', image, gone / 'f.h5', self.folder / 'm.h5', self.folder / 'p'),
+                ('an input too', 'hloc', image, image, self.folder / 'm.h5', self.folder / 'p'),
+                ('there is no folder', 'map', '--model', gone, *there, '--out', out), ('there is no folder', 'map', '--model', folder, '--images', gone, '--out', out),
+                ('is a file', 'map', '--model', folder, *there, '--out', image), ('is a file', 'map', '--model', folder, *there, '--out', inside),
+                ('there is no folder', 'localize', '--map', gone, *there, '--out', out), ('there is no folder', *localize, '--images', gone, '--out', out),
+                ('is a file', *localize, *there, '--out', image), ('is a file', *localize, *there, '--out', inside),
+                ('there is no folder', *localize, *there, '--out', gone / 'x.csv'), ('would be replaced', *localize, *there, '--out', folder),
+                ('there is no folder', 'localize', '--map', gone, '--images', '-'), ('there is no file', *localize, *there, '--out', out, '--imu', gone),
+                ('there is no folder', 'update', '--map', gone, *there), ('there is no folder', 'update', '--map', folder, '--images', gone),
+                ('is a file', 'update', '--map', folder, *there, '--out', image)):
+            with self.subTest(arguments):
+                status, out_, errors = run_command(*arguments)
+                self.assertRegex(errors, rf'^{arguments[0]}: [^\n]*{re.escape(told)}[^\n]*\n$')
+                self.assertEqual((status, out_), (2, ''))
+                self.assertEqual(set(self.folder.rglob('*')), files)
 
 
 if __name__ == '__main__':

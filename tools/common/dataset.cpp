@@ -134,8 +134,7 @@ std::vector<ImagePair> findPairs(const std::vector<std::string>& roots)
 {
     std::vector<ImagePair> pairs;
     visitFolders(roots, [&](const std::string& folder) {
-        const bool isWalk =
-                fs::isDirectory(fs::join(folder, "frames"));  // of tools/synthetic: the camera moves
+        const bool isWalk = fs::isDirectory(fs::join(folder, "frames"));  // the camera moves
         return !isWalk && !holdsViews(folder) && !addSequence(folder, pairs);
     });
     std::set<std::string> names;

@@ -52,8 +52,8 @@ cv::Matx33d readCamera(const std::string& file)
     });
     if (count != 1)
         CV_Error(cv::Error::StsParseError, file + ": not one PINHOLE camera");
-    return camera -
-           cv::Matx33d(0, 0, .5, 0, 0, .5, 0, 0, 0);  // of COLMAP, whose pixels begin at whole numbers
+    // of COLMAP, whose pixels begin at whole numbers
+    return camera - cv::Matx33d(0, 0, .5, 0, 0, .5, 0, 0, 0);
 }
 
 std::vector<View> readViews(const std::string& folder)

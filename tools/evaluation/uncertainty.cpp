@@ -157,8 +157,10 @@ void judgeAlignment(const ImagePair& pair, uint64 seed, const Told& told)
     const std::vector<cv::Point2f> from = {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}};
     std::vector<cv::Point2f> to = from, places, trueOnes;
     for (cv::Point2f& corner : to)
-        corner += cv::Point2f(float(random.uniform(-MOST_MOVED, MOST_MOVED) * size.width),
-                float(random.uniform(-MOST_MOVED, MOST_MOVED) * size.height));
+    {
+        corner.y += float(random.uniform(-MOST_MOVED, MOST_MOVED) * size.height);
+        corner.x += float(random.uniform(-MOST_MOVED, MOST_MOVED) * size.width);
+    }
     const cv::Matx33d moved = cv::getPerspectiveTransform(from, to);
     cv::Mat image, transform, error;
     cv::warpPerspective(loaded.target, image, moved, size, cv::INTER_CUBIC, cv::BORDER_REFLECT);

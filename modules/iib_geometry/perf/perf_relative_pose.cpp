@@ -14,11 +14,12 @@ void makeMatches(Mat& points1, Mat& points2)
     points2.create(200, 2, CV_64F);
     for (int i = 0; i < points1.rows; i++)
     {
-        const Vec2d at(random.uniform(0., 640.), random.uniform(0., 480.));
-        const double shift = 500 / random.uniform(4., 12.);
-        points1.at<Vec2d>(i) = at + Vec2d(random.gaussian(.2), random.gaussian(.2));
-        points2.at<Vec2d>(i) = i % 5 ? at - Vec2d(shift + random.gaussian(.2), random.gaussian(.2))
-                                     : Vec2d(random.uniform(0., 640.), random.uniform(0., 480.));
+        const double y = random.uniform(0., 480.), x = random.uniform(0., 640.),
+                     shift = 500 / random.uniform(4., 12.);
+        points1.at<Vec2d>(i)[1] = y + random.gaussian(.2);
+        points1.at<Vec2d>(i)[0] = x + random.gaussian(.2);
+        points2.at<Vec2d>(i)[1] = i % 5 ? y - random.gaussian(.2) : random.uniform(0., 480.);
+        points2.at<Vec2d>(i)[0] = i % 5 ? x - shift - random.gaussian(.2) : random.uniform(0., 640.);
     }
 }
 

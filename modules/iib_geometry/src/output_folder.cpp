@@ -10,8 +10,7 @@ namespace fs = std::filesystem;
 
 OutputFolder::OutputFolder(const std::string& folder, const std::function<bool(const std::string&)>& isOwn)
 {
-    const size_t end =
-            checkedName(folder).find_last_not_of('/');  // a slash behind a link would be a folder's
+    const size_t end = checkedName(folder).find_last_not_of('/');  // with a slash a link is its folder
     path_ = endOfLinks(end == std::string::npos ? folder : folder.substr(0, end + 1));
     const fs::path path = systemName(path_);
     std::error_code error, unknown;

@@ -113,8 +113,8 @@ TEST(Alignment, gives_fixed_sizes)
     Vec4d error;
     ASSERT_TRUE(alignImages(picture(18), picture(18), transform, ALIGN_TRANSLATION, error));
     EXPECT_NEAR(0, transform(0, 2), 1e-3);
-    EXPECT_GT(error[0],
-            .4 * .1 * std::sqrt(2));  // which all matches may have in common: exact ones err by a tenth
+    // which all matches may have in common: exact ones err by a tenth
+    EXPECT_GT(error[0], .4 * .1 * std::sqrt(2));
     EXPECT_FALSE(alignImages(picture(18), picture(19), transform, ALIGN_TRANSLATION, error));
     EXPECT_TRUE(std::isnan(transform(1, 1)) && std::isnan(error[3]));
 }

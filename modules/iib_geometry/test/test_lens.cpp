@@ -238,9 +238,11 @@ TEST(Pose, refined_to_the_truth_among_wrong_matches)
         std::vector<Match> matches;
         for (int i = 0; i < 200; i++)
         {
-            const cv::Point3d seen(
-                    random.uniform(-2., 2.), random.uniform(-1.5, 1.5), random.uniform(4., 9.));
-            const cv::Point2d wrong(random.uniform(-30., 30.), random.uniform(-30., 30.));
+            const double z = random.uniform(4., 9.), y = random.uniform(-1.5, 1.5),
+                         x = random.uniform(-2., 2.);
+            const double wrongY = random.uniform(-30., 30.), wrongX = random.uniform(-30., 30.);
+            const cv::Point3d seen(x, y, z);
+            const cv::Point2d wrong(wrongX, wrongY);
             matches.push_back(
                     {lens.project({seen})[0] + (i % 4 == 0 ? wrong : cv::Point2d()), inverse(truth) * seen});
         }

@@ -39,13 +39,25 @@ protected:
     {
         for (int i = 0; i < 40; i++)
         {
-            const cv::Point3d middle(
-                    random.uniform(-1., 1.), random.uniform(-.8, .8), random.uniform(3., 5.)),
-                    half(random.uniform(-.3, .3), random.uniform(.2, .5), random.uniform(-.3, .3));
+            const cv::Point3d middle = anyPoint();
+            const double z = random.uniform(-.3, .3), y = random.uniform(.2, .5), x = random.uniform(-.3, .3);
+            const cv::Point3d half(x, y, z);
             truth.push_back({middle - half, middle + half});
         }
         codes.create(int(truth.size()), 32, CV_8U);
         random.fill(codes, cv::RNG::UNIFORM, 0, 256);
+    }
+
+    cv::Point3d anyPoint()
+    {
+        const double z = random.uniform(3., 5.), y = random.uniform(-.8, .8), x = random.uniform(-1., 1.);
+        return {x, y, z};
+    }
+
+    cv::Point2d anyError(double pixels)
+    {
+        const double y = random.gaussian(pixels), x = random.gaussian(pixels);
+        return {x, y};
     }
 
     void add(double sideways)
@@ -64,7 +76,7 @@ protected:
 
     Segments seenFrom(const cv::Affine3d& cameraFromWorld)
     {
-        const auto off = [&] { return cv::Point2d(random.gaussian(.2), random.gaussian(.2)); };
+        const auto off = [&] { return anyError(.2); };
         Segments segments;
         segments.codes = codes.clone();
         for (const MapLine& line : truth)
@@ -122,13 +134,13 @@ TEST_F(Lines, make_poses_of_few_points_better)
     const Frame frame({Match{{}, {0, 0, 0}}, Match{{}, {0, 0, 1}}, Match{{}, {0, 0, -1}}});  // the world's
     for (int trial = 0; trial < 20; trial++)
     {
-        const cv::Affine3d pose =
-                poseAt(random.uniform(-.5, .5), random.uniform(-.1, .1), random.uniform(-.1, .1));
+        const double z = random.uniform(-.1, .1), y = random.uniform(-.1, .1), x = random.uniform(-.5, .5);
+        const cv::Affine3d pose = poseAt(x, y, z);
         std::vector<Match> matches;
         for (int i = 0; i < 8; i++)
         {
-            const cv::Point3d point(random.uniform(-1., 1.), random.uniform(-.8, .8), random.uniform(3., 5.));
-            const cv::Point2d off(random.gaussian(1), random.gaussian(1));
+            const cv::Point3d point = anyPoint();
+            const cv::Point2d off = anyError(1);
             matches.push_back({CAMERA.project({inverse(pose) * point})[0] + off, point});
         }
         cv::Affine3d found = inverse(pose);

@@ -16,6 +16,12 @@ Vec3d anyVector(RNG& random, double deviation)
     return {random.gaussian(deviation), random.gaussian(deviation), random.gaussian(deviation)};
 }
 
+Affine3d anyMotion(RNG& random, double turn, double way)
+{
+    const Vec3d moved = anyVector(random, way), turned = anyVector(random, turn);
+    return {turned, moved};
+}
+
 //! Images of one place whose poses in the map are off, by `far` and by a third of it in radians; none of their pixels is.
 struct WrongMap
 {
@@ -25,17 +31,21 @@ struct WrongMap
     WrongMap(RNG& random, int images, double far)
     {
         for (int i = 0; i < 60; i++)
-            points.emplace_back(random.uniform(-2., 2.), random.uniform(-1.5, 1.5), random.uniform(4., 8.));
+        {
+            const double z = random.uniform(4., 8.), y = random.uniform(-1.5, 1.5),
+                         x = random.uniform(-2., 2.);
+            points.emplace_back(x, y, z);
+        }
         map.points = points;
         for (int i = 0; i < images; i++)
         {
             MapImage image;
             image.camera = VGA;
-            const Affine3d truth(anyVector(random, .03), anyVector(random, .6));
+            const Affine3d truth = anyMotion(random, .03, .6);
             image.pixels = VGA.project(inCamera(points, truth));
             for (int k = 0; k < int(points.size()); k++)
                 image.sees.push_back(k);
-            const Affine3d wrong(anyVector(random, far / 3), anyVector(random, far));
+            const Affine3d wrong = anyMotion(random, far / 3, far);
             image.cameraFromWorld = wrong * truth;
             map.images.push_back(image);
         }
@@ -73,7 +83,7 @@ TEST(MapError, of_few_images_foretells_how_far_a_pose_in_their_map_is_off)
         for (int trial = 0; trial < trials; trial++)
         {
             const WrongMap scene(random, images, .003);
-            const Affine3d truth(anyVector(random, .03), anyVector(random, .6));
+            const Affine3d truth = anyMotion(random, .03, .6);
             const std::vector<Match> matches = scene.matches(truth);
             Affine3d pose = truth;
             Matx66d covariance;

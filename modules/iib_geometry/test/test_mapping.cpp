@@ -105,8 +105,9 @@ TEST_F(Mapping, the_maps_own_error_is_told)
         std::vector<PosedImage> model;
         for (const MapImage& image : map.images)
         {
-            const cv::Vec3d moved(random.gaussian(.002), random.gaussian(.002), random.gaussian(.002)),
-                    turned(random.gaussian(.001), random.gaussian(.001), random.gaussian(.001));
+            cv::Vec3d moved, turned;
+            random.fill(moved, cv::RNG::NORMAL, 0, .002);
+            random.fill(turned, cv::RNG::NORMAL, 0, .001);
             const cv::Affine3d off(turned * wrong, moved * wrong);
             model.push_back({image.name, CAMERA, off * image.cameraFromWorld, {}, {}});
         }
@@ -288,7 +289,8 @@ TEST(Rays, keypoints_are_matched_along_epipolar_lines)
     }
     for (size_t n = 0; n < COUNT; n++)
     {
-        const cv::Point3d point(random.uniform(-1., 1.), random.uniform(-1., 1.), random.uniform(4., 6.));
+        const double z = random.uniform(4., 6.), y = random.uniform(-1., 1.), x = random.uniform(-1., 1.);
+        const cv::Point3d point(x, y, z);
         cv::Mat code(1, 64, CV_8U);
         random.fill(code, cv::RNG::UNIFORM, 0, 256);
         const cv::Mat changed = code ^ cv::Mat(1, 64, CV_8U, cv::Scalar(1));
@@ -391,14 +393,32 @@ TEST_F(Mapping, a_damaged_model)
 #endif
 }
 
+TEST_F(Mapping, an_image_of_another_size_is_left_out)
+{
+    write(model(1, 40));
+    cv::imwrite(folder.path("images/5.png"), cv::Mat(240, 300, CV_8U, cv::Scalar(9)));
+    std::set<std::string> told;
+    Localizer(folder.path("sparse 0"), images(), 300,
+            [&](size_t, size_t, const std::string& problem) { told.insert(problem); });
+    EXPECT_EQ((std::set<std::string>{"", "6.png cannot be read: left out of the map",
+                      "5.png: the image has 300 x 240 pixels and its camera 320 x 240: left out of the map"}),
+            told);
+}
+
 TEST_F(Mapping, a_model_of_others)
 {
     EXPECT_NE(std::string::npos,
             error(model(1, 2, EQUIRECTANGULAR)).find("camera model 17 is not one of SIMPLE_"));
-    EXPECT_EQ("none of the model's images can be read, or they are empty", error(model(1, 2), "map"));
-    cv::imwrite(folder.path("images/3.png"), cv::Mat(240, 300, CV_8U, cv::Scalar(9)));
-    EXPECT_EQ("3.png: the image has 300 x 240 pixels and its camera 320 x 240: give the images of which the "
-              "model was made",
+    EXPECT_EQ("no point is found in any of the model's images: give those of which it was made; left "
+              "side/0.png "
+              "cannot be read: left out of the map",
+            error(model(1, 2), "map"));
+    for (const char* name :
+            {"left side/0.png", "left side/1.png", "left side/2.png", "3.png", "4.png", "5.png"})
+        cv::imwrite(folder.path("images/" + std::string(name)), cv::Mat(240, 300, CV_8U, cv::Scalar(9)));
+    EXPECT_EQ("no point is found in any of the model's images: give those of which it was made; left "
+              "side/0.png: "
+              "the image has 300 x 240 pixels and its camera 320 x 240: left out of the map",
             error(model(1, 2)));
     for (int i = 0; i < 6; i++)  // in another order
         cv::imwrite(

@@ -28,6 +28,12 @@ struct Sought
         matches.push_back({pixel + off, map.points.back(), number, number, 0, number % views, 0});
     }
 
+    //! The same at any depth.
+    void addAnywhere(RNG& random, const Point2d& pixel, const Point2d& off)
+    {
+        add(pixel, random.uniform(3., 6.), off);
+    }
+
     LocatedImage located() const
     {
         LocatedImage found;
@@ -53,7 +59,7 @@ TEST(PoseSearch, few_matches_that_all_agree_are_a_pose)
         {
             const Point2d place = corner + anyError(random, 20);
             for (const Point2d& beside : {Point2d(-6, -6), {6, -6}, {-6, 6}, {6, 6}})
-                sought.add(place + beside, random.uniform(3., 6.), anyError(random, .5));
+                sought.addAnywhere(random, place + beside, anyError(random, .5));
         }
         const LocatedImage found = sought.located();
         EXPECT_TRUE(found.found) << trial << ": " << found.reason;
@@ -70,7 +76,7 @@ TEST(PoseSearch, matches_in_one_window_are_no_pose)
         {
             const bool right = i < 20;
             const Point2d pixel = right ? Point2d(300, 200) + 4 * Point2d(i % 5, i / 5) : anyPixel(random);
-            sought.add(pixel, random.uniform(3., 6.), right ? Point2d() : anyPixel(random) - pixel);
+            sought.addAnywhere(random, pixel, right ? Point2d() : anyPixel(random) - pixel);
         }
         const LocatedImage found = sought.located();
         EXPECT_FALSE(found.found);
@@ -104,7 +110,7 @@ TEST(ClusteredCovariance, foretells_errors_that_neighbours_share)
             for (int i = 0; i < 240; i++)
             {
                 const Point2d pixel = anyPixel(random);
-                sought.add(pixel, random.uniform(3., 6.),
+                sought.addAnywhere(random, pixel,
                         ofCell[int(pixel.x / 160) + perSide * int(pixel.y / 120)] + anyError(random, .5));
             }
             Affine3d pose = HERE;

@@ -101,8 +101,11 @@ Drive driveOf(double seconds, const cv::Affine3d& imuFromCamera = cv::Affine3d::
     for (int64 time = 0; time <= int64(seconds * 1e9); time += step)
     {
         const cv::Affine3d truth = poseAt(double(time) * 1e-9) * imuFromCamera;
-        const cv::Vec3d moved(metres(random), metres(random), metres(random));
-        const cv::Vec3d turned(radians(random), radians(random), radians(random));
+        cv::Vec3d moved, turned;
+        for (int k : {2, 1, 0})
+            moved[k] = metres(random);
+        for (int k : {2, 1, 0})
+            turned[k] = radians(random);
         Location image;
         image.found = true;
         image.cameraFromWorld =

@@ -48,11 +48,10 @@ public:
         }
         for (int i = 0; i < posters; i++)
         {
-            const cv::Point corner(
-                    random.uniform(0, texture_.cols - 200), random.uniform(0, texture_.rows - 200));
-            cv::rectangle(texture_,
-                    cv::Rect(corner, cv::Size(random.uniform(60, 200), random.uniform(60, 200))),
-                    cv::Scalar(random.uniform(0, 256)), cv::FILLED);
+            const int y = random.uniform(0, texture_.rows - 200), x = random.uniform(0, texture_.cols - 200),
+                      grey = random.uniform(0, 256), height = random.uniform(60, 200),
+                      width = random.uniform(60, 200);
+            cv::rectangle(texture_, cv::Rect(x, y, width, height), cv::Scalar(grey), cv::FILLED);
         }
         texture_.convertTo(texture_, CV_8U);
     }

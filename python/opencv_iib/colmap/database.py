@@ -15,6 +15,7 @@ from typing import Any, Iterator, NoReturn, Optional, Sequence
 import numpy as np
 
 from opencv_iib._files import replaced
+from opencv_iib._images import in_order
 
 SCHEMA_VERSION = 3800
 MAX_IMAGE_ID = 2147483647
@@ -186,16 +187,15 @@ class Database(contextlib.AbstractContextManager['Database']):
                              (camera,))
 
     def image_ids(self) -> dict[str, int]:
-        """Numbers of the images by name, in the order of the names."""
-        return dict(self._db.execute('SELECT name, image_id FROM images ORDER BY name'))
-
-    def sizes(self) -> Iterator[tuple[str, int, int]]:
-        """Name, width and height of each image."""
-        yield from self._db.execute('SELECT name, width, height FROM images NATURAL JOIN cameras ORDER BY name')
+        """Numbers of the images by name, in_order."""
+        return self._ids('')
 
     def without_codes(self) -> dict[str, int]:
         """Numbers by name of images that were described in an earlier run, whose codes are not there."""
-        return dict(self._db.execute('SELECT name, image_id FROM images WHERE image_id NOT IN (SELECT image_id FROM iib_codes) ORDER BY name'))
+        return self._ids('WHERE image_id NOT IN (SELECT image_id FROM iib_codes)')
+
+    def _ids(self, where: str) -> dict[str, int]:
+        return dict(sorted(self._db.execute(f'SELECT name, image_id FROM images {where}'), key=lambda row: in_order(row[0])))
 
     def add_codes(self, image: int, keypoints: np.ndarray, codes: np.ndarray) -> bool:
         """Of an image that was described in an earlier run; False, and nothing is added, if its keypoints are others now."""

@@ -8,7 +8,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from opencv_iib._arguments import InvalidOption, Path
+from opencv_iib._arguments import InvalidOption, Path, integer
 from opencv_iib._upright import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector
@@ -51,7 +51,7 @@ class FeatureOptions:
             raise InvalidOption(f'no detector {self.detector}: there are {", ".join(DETECTORS)}')
         if self.preset not in preset_names():
             raise InvalidOption(f'no preset {self.preset}: there are {", ".join(preset_names())}')
-        if not 1 <= self.points <= MAX_POINTS:
+        if not 1 <= integer(self.points, 'points', 64) <= MAX_POINTS:
             raise InvalidOption(f'points is {self.points}: it must be 1 to {MAX_POINTS}')
         check_max_size(self.max_size)
 
@@ -70,7 +70,7 @@ def make_detector(name: str, points: int) -> Any:
 
 def check_max_size(max_size: int) -> None:
     """:raises InvalidOption: for fewer pixels than show anything."""
-    if max_size and not MIN_SIZE <= max_size:
+    if integer(max_size, 'max_size', 64) and not MIN_SIZE <= max_size:
         raise InvalidOption(f'max_size is {max_size}: it must be at least {MIN_SIZE} pixels, or 0')
 
 

@@ -8,7 +8,7 @@ import sqlite3
 
 import numpy as np
 
-from opencv_iib._arguments import InvalidOption, Path
+from opencv_iib._arguments import InvalidOption, MissingFile, Path
 from opencv_iib._files import check_outputs, output_file, replaced
 from opencv_iib._images import is_listable
 from opencv_iib.colmap.database import MAX_IMAGE_ID
@@ -86,7 +86,7 @@ def export(database: Path, features: Path, matches: Path, pairs: Path, force: bo
         if os.path.exists(path) and not force:
             raise FileExistsError(f'{path} is there already: remove it, or pass force (--force)')
     if not os.path.isfile(database):
-        raise FileNotFoundError(f'no database {database}')
+        raise MissingFile(f'there is no database {os.fspath(database)}')
     with contextlib.closing(sqlite3.connect(f'{pathlib.Path(database).absolute().as_uri()}?mode=ro', uri=True)) as connection, \
             replaced(*paths) as (new_features, new_matches, new_pairs):
         return _write_matches(connection, new_matches, new_pairs, *_write_features(connection, new_features))

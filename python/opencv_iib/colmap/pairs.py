@@ -9,6 +9,7 @@ from typing import Callable, Iterable, Iterator, Mapping, Optional, Sequence
 import numpy as np
 
 from opencv_iib._arguments import MissingFile, Path
+from opencv_iib._images import is_utf8
 from opencv_iib.matcher import HierarchicalMatcher
 
 Pair = tuple[int, int]
@@ -71,14 +72,16 @@ def from_file(path: Path, numbers: Mapping[str, Optional[int]]) -> Iterator[Pair
     """
     if not os.path.exists(path):
         raise MissingFile(f'there is no list of pairs {os.fspath(path)}')
-    with open(path, encoding='utf-8-sig') as file:
+    with open(path, encoding='utf-8-sig', errors='surrogateescape') as file:
         for number, line in enumerate(map(str.strip, file), 1):
+            if not is_utf8(line):
+                raise ValueError(f'{os.fspath(path)}:{number}: not UTF-8')
             cuts = ((line[:blank.start()], line[blank.end():]) for blank in re.finditer(r'\s+', line))  # names may have blanks
             a, b = next((cut for cut in cuts if numbers.keys() >= set(cut)), ('', ''))
             if a and a != b and None not in (numbers[a], numbers[b]):
                 yield numbers[a], numbers[b]  # type: ignore[misc]
             elif not a and line and not line.startswith('#'):
-                raise ValueError(f'{path}:{number}: not the names of two images')
+                raise ValueError(f'{os.fspath(path)}:{number}: not the names of two images')
 
 
 def retrieval(count: int, load: Callable[[int], np.ndarray], level_sizes: Sequence[int], neighbours: int,

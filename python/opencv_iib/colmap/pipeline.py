@@ -11,9 +11,9 @@ from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
 import numpy as np
 
 import opencv_iib
-from opencv_iib._arguments import InvalidOption, Path
+from opencv_iib._arguments import InvalidOption, Path, integer, number, sequence
 from opencv_iib._exif import exif_focal_length, exif_orientation, gps_place
-from opencv_iib._files import check_outputs, only_writer, output_file, read_bytes
+from opencv_iib._files import check_is_folder, check_outputs, only_writer, output_file, read_bytes
 from opencv_iib._images import Masks, decode_grey, find_images, import_cv2, is_listable, is_utf8
 from opencv_iib._parallel import Cluster, Crew, Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
@@ -46,7 +46,7 @@ class Options:
 
     def __post_init__(self) -> None:
         pairs = os.fspath(self.pairs)
-        for field, name in (('camera_model', self.camera_model.upper()), ('verify', self.verify.lower()),
+        for field, name in (('camera_model', str(self.camera_model).upper()), ('verify', str(self.verify).lower()),
                             ('pairs', pairs.lower() if pairs.lower() in PAIRS else pairs)):  # in any case
             object.__setattr__(self, field, name)
 
@@ -63,12 +63,12 @@ class Options:
         """:raises InvalidOption: naming what is wrong, and what there is."""
         self.features.check()
         import_cv2()
-        if not 0 <= self.focal < float('inf'):
+        if not 0 <= number(self.focal, 'focal') < float('inf'):
             raise InvalidOption(f'focal is {self.focal}: it must be a number of pixels, or 0')
         if self.camera_model not in CAMERA_MODELS:
             raise InvalidOption(f'no camera model {self.camera_model}: there are {", ".join(CAMERA_MODELS)}')
-        for text in self.camera_of:
-            if '=' not in text:
+        for text in sequence(self.camera_of, 'camera_of', "'FOLDER=MODEL,WIDTH,HEIGHT,PARAMS'"):
+            if '=' not in str(text):
                 raise InvalidOption(f'camera_of is {text}: it must be FOLDER=MODEL,WIDTH,HEIGHT,PARAMS')
         for camera in [*(text.rpartition('=')[2] for text in self.camera_of), *([] if self.camera is None else [self.camera])]:
             try:
@@ -81,9 +81,9 @@ class Options:
             raise InvalidOption(f'verify is {self.verify}: it must be one of {", ".join(VERIFIERS)}')
         if self.verify == 'colmap' and colmap_binary() is None:
             raise InvalidOption('verify is colmap, but there is no program colmap: install it, or take magsac')
-        if self.neighbours < 1:
+        if integer(self.neighbours, 'neighbours', 64) < 1:
             raise InvalidOption(f'neighbours is {self.neighbours}: it must be at least 1')
-        if not 0 < self.ratio <= 1:
+        if not 0 < number(self.ratio, 'ratio') <= 1:
             raise InvalidOption(f'ratio is {self.ratio}: it must be in (0, 1]')
 
 
@@ -279,8 +279,7 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     options.check()
     crew = Threads(thread_count(workers)) if client is None else Cluster(client)
     images, database = os.fspath(images), output_file(os.fspath(database))
-    if not os.path.isdir(images):
-        raise ValueError(f'{images} is no folder')
+    check_is_folder(images)
     names = find_images(images)
     if not names:
         raise ValueError(f'no images below {images}')

@@ -171,7 +171,7 @@ def as_rows_of(values: ArrayLike, columns: int, what: str) -> NDArray[np.float64
 
 def as_pose(pose: ArrayLike) -> NDArray[np.float64]:
     """A 3 x 4 or 4 x 4 rigid motion as 4 x 4."""
-    matrix = np.asarray(pose, np.float64)
+    matrix = as_array(pose, 'a pose').astype(np.float64, copy=False)
     if matrix.shape not in ((3, 4), (4, 4)) or not np.isfinite(matrix).all():
         raise ValueError(f'a pose is 3 x 4 or 4 x 4 finite numbers, not {matrix.shape}')
     return np.concatenate([matrix[:3], [[0, 0, 0, 1]]])

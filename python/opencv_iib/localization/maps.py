@@ -13,7 +13,7 @@ from opencv_iib import _core
 from opencv_iib._arguments import InvalidOption, Path, integer
 from opencv_iib._arrays import as_mask
 from opencv_iib._exif import exif_orientation
-from opencv_iib._files import read_bytes
+from opencv_iib._files import check_folder, check_is_folder, read_bytes
 from opencv_iib._images import Masks, decode_grey
 from opencv_iib._parallel import thread_count
 from opencv_iib._progress import Progress
@@ -23,6 +23,10 @@ from opencv_iib.localization.localizer import AnyCamera, Camera, Location
 from opencv_iib.localization.run import at_size, images_of, locate
 
 
+LEFT_OUT = ': left out of the map'
+UNREAD = (' cannot be read' + LEFT_OUT).encode()
+
+
 def _count(file: str) -> int:
     """Of what a binary file of COLMAP holds."""
     with open(file, 'rb') as opened:
@@ -30,6 +34,7 @@ def _count(file: str) -> int:
 
 
 def _check_new(out: Path, force: bool) -> None:
+    check_folder(out)
     if os.path.isdir(out) and os.listdir(out) and not force:
         raise FileExistsError(f'{out} is there already: choose another folder, or pass force (--force) to replace a map')
 
@@ -45,16 +50,16 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     :param points: at most so many keypoints an image.
     :param workers: threads; None for one a core.
     :param force: replace a map that is there. Who reads it meanwhile gets the old one or the new one.
-    :param log: told of each image that cannot be read; the map is made without it.
+    :param log: told of each image that is missing, cannot be read or is of another size than its camera; the map is made without it.
     :param lines: look for straight edges too, see Localizer.
     :param orb_and_akaze: the paper's points and descriptor in place of the recommended ones; images are then looked for by them.
     :param exif: images are described as upright as their EXIF data say; of those that are turned the map has the upright cameras and poses.
     :param mask: what is described, as of Masks.
     :param max_size: pixels of the longer side to which larger images are reduced to find and describe points; 0: they are not.
-    :return: counts of images and points.
+    :return: counts of images, points, and images that were left out.
     :raises InvalidOption: for no points, or more than an image can have.
     :raises FileExistsError: if there is a map and force is not set.
-    :raises FileNotFoundError: naming an image that is missing.
+    :raises FileNotFoundError: for a folder that is not there.
     :raises opencv_iib.error: for a model that is damaged or not that of the images, and for a folder that holds other files.
     """
     if not 1 <= integer(points, 'points', 64) <= MAX_POINTS:
@@ -63,32 +68,32 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     threads, used = _core.getNumThreads(), thread_count(workers)
     target = os.path.realpath(out)
     _check_new(out, force)
-    if not os.path.isdir(images):
-        raise FileNotFoundError(f'there is no folder {images}')
+    for folder in (model, images):
+        check_is_folder(folder)
     stop = threading.Event()
     progress: Optional[Progress] = None
 
-    masks = Masks(mask)
+    masks, left_out = Masks(mask), 0
+    reasons: dict[bytes, bytes] = {}  # why images cannot be read, by what is said of them there
 
     def read(name: bytes) -> tuple[NDArray[np.uint8], int, NDArray[np.uint8]]:
         if stop.is_set():
             raise KeyboardInterrupt
-        path = os.path.join(images, os.fsdecode(name))
-        if not os.path.exists(path):
-            raise FileNotFoundError(f'{path} is missing, an image of the model')
         try:
-            data = read_bytes(path)
+            data = read_bytes(os.path.join(images, os.fsdecode(name)))
             image = decode_grey(data)
-        except ValueError:
+            return image, exif_orientation(data) if exif else 1, as_mask(masks.of(os.fsdecode(name), image))
+        except (ValueError, OSError) as e:
+            reasons[name + UNREAD] = name + f': {getattr(e, "strerror", None) or e}{LEFT_OUT}'.encode(errors='surrogateescape')
             return as_mask(None), 1, as_mask(None)
-        return image, exif_orientation(data) if exif else 1, as_mask(masks.of(os.fsdecode(name), image))
 
     def report(done: int, total: int, problem: bytes) -> None:
-        nonlocal progress
+        nonlocal progress, left_out
         if stop.is_set():
             raise KeyboardInterrupt
         if problem:
-            log(problem.decode(errors='backslashreplace'))
+            left_out += 1
+            log(reasons.get(problem, problem).decode(errors='backslashreplace'))
         progress = progress or Progress('mapping', total)
         progress.step(done - progress.done)
 
@@ -101,7 +106,8 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
             _core.setNumThreads(threads)
             if progress is not None:
                 progress.close()
-    return {'images': _count(os.path.join(target, 'images.bin')), 'points': _count(os.path.join(target, 'points3D.bin'))}
+    known, seen = (_count(os.path.join(target, name)) for name in ('images.bin', 'points3D.bin'))
+    return {'images': known - left_out, 'points': seen, 'left out': left_out}
 
 
 def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Optional[Path] = None,
@@ -125,6 +131,7 @@ def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Opt
     """
     workers = thread_count(workers)
     check_max_size(max_size)
+    check_is_folder(map)
     if out is not None:
         _check_new(out, force)
     names = images_of(images)

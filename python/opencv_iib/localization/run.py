@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core, error
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._exif import exif_focal_length, exif_orientation
-from opencv_iib._files import check_folder, check_outputs, new_results, plan, read_bytes, write_whole
-from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, in_order, is_utf8, read_grey, write_picture
+from opencv_iib._files import check_folder, check_is_folder, check_outputs, new_results, plan, read_bytes, write_whole
+from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, is_utf8, read_grey, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import is_open_file, note
@@ -130,8 +130,7 @@ def images_of(folder: Path, out: Path = '') -> list[str]:
 
     :raises ValueError: if there are none.
     """
-    if not os.path.isdir(folder):
-        raise FileNotFoundError(f'there is no folder {folder}')
+    check_is_folder(folder)
     inside = os.path.relpath(os.path.realpath(out), os.path.realpath(folder)).replace(os.sep, '/') if out else '..'
     names = [name for name in find_images(folder) if not name.startswith(inside + '/')]
     if not names:
@@ -190,7 +189,8 @@ def at_size(max_size: int, find: Callable[..., Location], image: NDArray[np.uint
 
 
 def _localizer(map: Path, points: int, lines: bool) -> Localizer:
-    """:raises InvalidOption: for lines of a map without them, or where OpenCV finds none."""
+    """:raises InvalidOption: for no folder, lines of a map without them, or where OpenCV finds none."""
+    check_is_folder(map)
     try:
         return Localizer(map, points, lines)
     except error as e:
@@ -262,7 +262,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     table_alone = out.lower().endswith('.csv') or is_open_file(out)
     names, times, readings = images_of(images, '' if table_alone else out), {}, None
     if sequence:
-        names, workers = sorted(names, key=in_order), 1
+        workers = 1
     if table_alone:
         if pictures:
             raise InvalidOption(f'{out} is no folder, which pictures need')

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
-from opencv_iib._arguments import integers
+from opencv_iib._arguments import integers, sequence
 from opencv_iib._arrays import as_array
 from opencv_iib.localization.localizer import Location, as_pose
 
@@ -43,7 +43,8 @@ def smooth_poses(times: Sequence[Any], locations: Sequence[Location], readings: 
     rows = as_array(readings, 'readings').astype(np.float64, copy=False)
     if rows.ndim != 2 or rows.shape[1] != 7 or not np.isfinite(rows).all() or np.abs(rows).max(initial=0) > MAX_TIME:
         raise ValueError(f'readings are M x 7 finite numbers: nanoseconds, rate and force, not {rows.shape}')
+    locations = sequence(locations, 'locations', 'what Localizer.localize finds')
     for location in locations:
         if not isinstance(location, _core.Location):
             raise TypeError(f'locations: what Localizer.localize finds is needed, not {location!r}')
-    return SmoothedPoses(*_core.smoothPoses(integers(times, 'times', 64), list(locations), rows, as_pose(imu_from_camera)))
+    return SmoothedPoses(*_core.smoothPoses(integers(times, 'times', 64), locations, rows, as_pose(imu_from_camera)))

@@ -36,7 +36,8 @@ cv::Mat rendered(const Camera& camera, double brightness)
     for (int i = 0; i < 260; i++)
     {
         const double depth = 14 - 10. * i / 260;
-        const cv::Vec3d point(rng.uniform(-0.6, 0.6) * depth, rng.uniform(-0.45, 0.45) * depth, depth);
+        const double y = rng.uniform(-0.45, 0.45) * depth, x = rng.uniform(-0.6, 0.6) * depth;
+        const cv::Vec3d point(x, y, depth);
         cv::Mat blocks(4, 4, CV_8U), texture;
         rng.fill(blocks, cv::RNG::UNIFORM, 10, 245);
         cv::resize(blocks, texture, cv::Size(28, 28), 0, 0, cv::INTER_NEAREST);

@@ -40,9 +40,9 @@ protected:
         cv::Mat scene(240, 320, CV_8UC1, cv::Scalar(90));
         for (int i = 0; i < 900; i++)
         {
-            const cv::Point corner(rng.uniform(0, 320), rng.uniform(0, 240));
-            const cv::Size size(rng.uniform(4, 26), rng.uniform(4, 26));
-            cv::rectangle(scene, cv::Rect(corner, size), cv::Scalar(rng.uniform(20, 230)), -1);
+            const int y = rng.uniform(0, 240), x = rng.uniform(0, 320), height = rng.uniform(4, 26),
+                      width = rng.uniform(4, 26);
+            cv::rectangle(scene, cv::Rect(x, y, width, height), cv::Scalar(rng.uniform(20, 230)), -1);
         }
         folder.makeFolder("data/set/still/depth");
         folder.makeFolder("data/set/v_shift");

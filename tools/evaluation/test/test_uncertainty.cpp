@@ -72,7 +72,8 @@ TEST(Uncertainty, rectified_cameras_see_points_in_one_row)
             random.fill(turned, cv::RNG::UNIFORM, -.3, .3);
             random.fill(X, cv::RNG::UNIFORM, 4, 8);
             const cv::Matx33d R = cv::Affine3d(turned).rotation();
-            const cv::Vec3d t(side, random.uniform(-.4, .4), random.uniform(-.4, .4));
+            const double z = random.uniform(-.4, .4), y = random.uniform(-.4, .4);
+            const cv::Vec3d t(side, y, z);
             const Rectification turns = rectificationOf(R, t);
             for (const cv::Matx33d& turn : {turns.first, turns.second})
                 EXPECT_LT(

@@ -300,8 +300,8 @@ FileLock::FileLock(const String& name, Busy busy)
 
 FileLock::~FileLock()
 {
-    flock(file,
-            LOCK_UN);  // closing is not enough: a process that was forked meanwhile holds the same open file
+    // closing is not enough: a process that was forked meanwhile holds the same open file
+    flock(file, LOCK_UN);
     close(file);
 }
 #endif

@@ -16,9 +16,9 @@ namespace {
 const double NORMALIZATION_SIGMA = 8;
 const double LARGEST_SPACING = 1.25;  //!< pixels from one sample to the next
 const double SAME_SIZE = 1.1;
-const int SAME_TURN = 10;          //!< degrees: patches that are turned by less agree without that
-const size_t VOTING_MATCHES = 64;  //!< for the turn, each with each other
-const double LEAST_WITH_MAP = .4;  //!< similarity at the start: most tries are wrong, and end here
+const int SAME_TURN = 10;           //!< degrees: patches that are turned by less agree without that
+const size_t VOTING_MATCHES = 64;   //!< for the turn, each with each other
+const double LEAST_WITH_WARP = .4;  //!< similarity at the start: most tries are wrong, and end here
 const double MATCHES_OF_A_THREAD = 8;
 
 Mat checked(InputArray image, int number)
@@ -117,8 +117,8 @@ MatchRefiner::Start MatchRefiner::begin(const Refinement& refinement) const
     const Vec2d place(b.pt.x, b.pt.y);
     if (refinement.guided)
     {
-        Start start(std::sqrt(std::abs(determinant(refinement.map))), LEAST_WITH_MAP);
-        start.places.add({place, refinement.map * start.unit});
+        Start start(std::sqrt(std::abs(determinant(refinement.warp))), LEAST_WITH_WARP);
+        start.places.add({place, refinement.warp * start.unit});
         return start;
     }
     const double ratio = (double)b.size / a.size;
@@ -145,10 +145,10 @@ bool MatchRefiner::isInside(const KeyPoint& keypoint, const Mat& image)
     return p.x >= 0 && p.y >= 0 && p.x <= image.cols - 1 && p.y <= image.rows - 1;
 }
 
-bool MatchRefiner::mayMatch(int query, int train, const Matx22d& map) const
+bool MatchRefiner::mayMatch(int query, int train, const Matx22d& warp) const
 {
     const Point2f a = first[query].pt, b = second[train].pt;
-    return mayAgree(images[0].pixels, Vec2d(a.x, a.y), images[1].pixels, Vec2d(b.x, b.y), map);
+    return mayAgree(images[0].pixels, Vec2d(a.x, a.y), images[1].pixels, Vec2d(b.x, b.y), warp);
 }
 
 void MatchRefiner::refine(std::vector<Refinement>& matches) const

@@ -11,17 +11,18 @@
 namespace cv {
 namespace iib {
 
-//! A match to be refined, and what it came to.
+//! A match to be refined, and what was found.
 struct Refinement
 {
     DMatch match;
-    bool guided;  //!< begins with a map
-    Matx22d map;  //!< of the surroundings, from the first image to the second
+    bool guided;  //!< whether the search begins with `warp`, and not with what the keypoints' angles and sizes say
+    Matx22d warp;  //!< from the first image's surroundings of the keypoint to the second's
     PatchAlignment found;
 
-    //! Begins where the keypoints' angles and sizes say.
     explicit Refinement(const DMatch& match_) : match(match_), guided(false), found() {}
-    Refinement(const DMatch& match_, const Matx22d& map_) : match(match_), guided(true), map(map_), found() {}
+    Refinement(const DMatch& match_, const Matx22d& warp_) : match(match_), guided(true), warp(warp_), found()
+    {
+    }
 };
 
 //! Refines matches of two images' keypoints by least-squares matching.
@@ -34,8 +35,8 @@ public:
 
     void refine(std::vector<Refinement>& matches) const;
 
-    //! Whether a match may be one, after a coarse look. @param map of the surroundings, from the first image to the second.
-    bool mayMatch(int query, int train, const Matx22d& map) const;
+    //! Whether a match may be one, after a coarse look. @param warp as in Refinement.
+    bool mayMatch(int query, int train, const Matx22d& warp) const;
 
     Size firstSize() const { return images[0].pixels.size(); }
     Size secondSize() const { return images[1].pixels.size(); }

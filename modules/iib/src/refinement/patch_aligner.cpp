@@ -74,9 +74,9 @@ bool invert(Matx66d& m)
 }
 
 //! How far a patch reaches from its centre, in x and in y.
-Vec2d reachOf(const Matx22d& map)
+Vec2d reachOf(const Matx22d& warp)
 {
-    return Vec2d(std::abs(map(0, 0)) + std::abs(map(0, 1)), std::abs(map(1, 0)) + std::abs(map(1, 1))) *
+    return Vec2d(std::abs(warp(0, 0)) + std::abs(warp(0, 1)), std::abs(warp(1, 0)) + std::abs(warp(1, 1))) *
            REACH;
 }
 
@@ -148,26 +148,26 @@ Mat preparedForAlignment(const Mat& normalized)
 }
 
 bool mayAgree(
-        const Mat& image1, const Vec2d& point1, const Mat& image2, const Vec2d& point2, const Matx22d& map)
+        const Mat& image1, const Vec2d& point1, const Mat& image2, const Vec2d& point2, const Matx22d& warp)
 {
     const int corner = -LOOK_APART * (LOOK - 1) / 2;
-    const Vec2d reach = reachOf(map);
+    const Vec2d reach = reachOf(warp);
     if (!(std::max(reach[0], reach[1]) < IMAGE_BORDER - 2))
         return true;  // it is more than the borders of images hold
     const Point centre1(cvRound(point1[0]), cvRound(point1[1]));
-    const Vec2d centre2 = point2 + map * (Vec2d(centre1.x, centre1.y) - point1);
+    const Vec2d centre2 = point2 + warp * (Vec2d(centre1.x, centre1.y) - point1);
     const auto fixed = [](double value) { return cvRound(value * (1 << POSITION_BITS)); };
     const Point base(cvFloor(centre2[0]), cvFloor(centre2[1])),
             half(1 << (POSITION_BITS - 1), 1 << (POSITION_BITS - 1));
     Point rows[LOOK];
     for (int y = 0; y < LOOK; y++)
     {
-        const Vec2d begin = map * Vec2d(corner, corner + LOOK_APART * y);
+        const Vec2d begin = warp * Vec2d(corner, corner + LOOK_APART * y);
         rows[y] = Point(fixed(centre2[0] - base.x + begin[0]), fixed(centre2[1] - base.y + begin[1])) + half;
     }
     const LookSums s = refinementKernels().look(pixelsFrom(image1, centre1 + Point(corner, corner)),
             image1.step, pixelsFrom(image2, base), image2.step, rows,
-            Point(fixed(map(0, 0) * LOOK_APART), fixed(map(1, 0) * LOOK_APART)));
+            Point(fixed(warp(0, 0) * LOOK_APART), fixed(warp(1, 0) * LOOK_APART)));
     const double all = LookSums::WEIGHTS;
     const double covariance = s.products * all - s.first * (double)s.second;
     const double variance1 = s.firstSquares * all - s.first * (double)s.first;
@@ -215,7 +215,7 @@ Vec2d PatchAligner::readTemplate(const Mat& image, const Vec2d& point)
 //! The surroundings of a place.
 void PatchAligner::readWindow(const Mat& image, const PatchPlace& place)
 {
-    const Vec2d reach = reachOf(place.map);
+    const Vec2d reach = reachOf(place.warp);
     const int halfWidth = cvCeil(std::min(reach[0] + MARGIN, WINDOW / 2 - 1.)) + 1;
     const int halfHeight = cvCeil(std::min(reach[1] + MARGIN, WINDOW / 2 - 1.)) + 1;
     pixels = Rect(cvFloor(place.centre[0]) + 1 - halfWidth, cvFloor(place.centre[1]) + 1 - halfHeight,
@@ -227,17 +227,16 @@ void PatchAligner::readWindow(const Mat& image, const PatchPlace& place)
 bool PatchAligner::sampleAt(const PatchPlace& place)
 {
     const Vec2d centre = place.centre - Vec2d(pixels.x, pixels.y);
-    const Vec2d reach = reachOf(place.map) + Vec2d(.01, .01);  // for roundings of positions
+    const Vec2d reach = reachOf(place.warp) + Vec2d(.01, .01);  // for roundings of positions
     if (!(centre[0] >= reach[0] && centre[0] + reach[0] < pixels.width && centre[1] >= reach[1] &&
                 centre[1] + reach[1] < pixels.height))
         return false;
     const auto fixed = [](const Vec2d& v) {
         return Point(cvRound(v[0] * (1 << POSITION_BITS)), cvRound(v[1] * (1 << POSITION_BITS)));
     };
-    const Point rounding(
-            1 << (POSITION_BITS - 9), 1 << (POSITION_BITS - 9));  // to the parts of a pixel that are read
-    const PatchGrid grid = {fixed(centre - place.map * Vec2d(REACH, REACH)) + rounding,
-            fixed(place.map * Vec2d(2, 0)), fixed(place.map * Vec2d(0, 2))};
+    const int half = 1 << (POSITION_BITS - 9);  // of the parts of a pixel that are read
+    const PatchGrid grid = {fixed(centre - place.warp * Vec2d(REACH, REACH)) + Point(half, half),
+            fixed(place.warp * Vec2d(2, 0)), fixed(place.warp * Vec2d(0, 2))};
     kernels.sample(window.data(), grid, samples.data());
     return true;
 }
@@ -321,14 +320,14 @@ Vec2d PatchAligner::interpolationError(const PatchPlace& place) const
     for (int y : places)
         for (int x : places)
         {
-            const Vec2d sample = place.centre + place.map * Vec2d(x, y);
+            const Vec2d sample = place.centre + place.warp * Vec2d(x, y);
             for (int axis = 0; axis < 2; axis++)
             {
                 const double part = sample[axis] - cvFloor(sample[axis]);
                 sum[axis] += part * (1 - part) * (1 - 2 * part) / 16;
             }
         }
-    const double pixelsOfUnits = std::abs(determinant(place.map));  // squared
+    const double pixelsOfUnits = std::abs(determinant(place.warp));  // squared
     const auto squaredFrequency = [&](ptrdiff_t next) {  // of the waves that tell a place along a direction
         const SquaredDifferences squares = kernels.squareDifferences(pixels1, step1, next);
         return squares.second / (squares.first + 1.);
@@ -381,8 +380,8 @@ Matx22d PatchAligner::covariance(const Moments& moments) const
     const Matx<double, 2, 6> ofPoint(1, 0, x, y, 0, 0, 0, 1, 0, 0, x, y);
     const Matx<double, 6, 2> ofParameters = inverse * ofPoint.t();
     const Matx22d ofUnit = ofPoint * ofParameters;
-    const double remaining =
-            1 / (similarity * similarity) - 1;  // squared, in parts of what the template explains
+    // squared, in parts of what the template explains
+    const double remaining = 1 / (similarity * similarity) - 1;
     const double greyLevel = (1 << SAMPLE_BITS) / moments.deviation;  // both images are rounded to whole ones
     const double noise = std::max(remaining, greyLevel * greyLevel / 6) / independentSamples;
     const auto scaleOf = [&](int derivative) {
@@ -414,7 +413,7 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
     if (!usable)
         return refused;
     const auto smaller = [](const PatchPlace& a, const PatchPlace& b) {
-        return reachOf(a.map)[0] < reachOf(b.map)[0];
+        return reachOf(a.warp)[0] < reachOf(b.warp)[0];
     };
     readWindow(image2, *std::max_element(starts.begin(), starts.end(), smaller));
     double similarity = least;
@@ -422,7 +421,7 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
     Moments moments = Moments();
     for (const PatchPlace& start : starts)
     {
-        const PatchPlace tried = {start.centre - start.map * beside, start.map};
+        const PatchPlace tried = {start.centre - start.warp * beside, start.warp};
         if (!sampleAt(tried))
             continue;
         const Moments found = momentsOf(samples.data());
@@ -449,9 +448,9 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
         const double determinant = change(0, 0) * change(1, 1) - change(0, 1) * change(1, 0);
         if (!(std::abs(determinant) > 1e-3))
             return refused;
-        place.map = place.map * Matx22d(change(1, 1), -change(0, 1), -change(1, 0), change(0, 0)) *
-                    (1 / determinant);
-        place.centre -= place.map * Vec2d(d[0], d[1]);
+        place.warp = place.warp * Matx22d(change(1, 1), -change(0, 1), -change(1, 0), change(0, 0)) *
+                     (1 / determinant);
+        place.centre -= place.warp * Vec2d(d[0], d[1]);
         if (d[0] * d[0] + d[1] * d[1] < LAST_STEP * LAST_STEP || (i == MOST_STEPS && similarity > first))
             break;
         if (i == MOST_STEPS || !sampleAt(place))
@@ -464,11 +463,11 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
     if (!(similarity > LEAST_SIMILARITY))
         return refused;
     place.centre -= interpolationError(place);
-    const Vec2d found = place.centre + place.map * beside, moved = found - detected;
+    const Vec2d found = place.centre + place.warp * beside, moved = found - detected;
     if (!(moved.dot(moved) < LARGEST_MOVE * LARGEST_MOVE))
         return refused;
-    return {true, found, std::min(similarity, 1.), place.map * covariance(moments) * place.map.t(),
-            place.map * (1 / unit)};
+    return {true, found, std::min(similarity, 1.), place.warp * covariance(moments) * place.warp.t(),
+            place.warp * (1 / unit)};
 }
 
 }  // namespace iib

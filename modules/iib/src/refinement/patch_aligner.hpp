@@ -10,11 +10,11 @@
 namespace cv {
 namespace iib {
 
-//! A patch on an image: its centre, and the linear map from the patch's units to pixels.
+//! A patch on an image: its centre, and the linear warp from the patch's units to pixels (affine, with the centre).
 struct PatchPlace
 {
     Vec2d centre;
-    Matx22d map;
+    Matx22d warp;
 };
 
 //! One place or more where a patch may begin.
@@ -36,16 +36,16 @@ struct PatchAlignment
     Vec2d point;        //!< in the second image, pixels
     double similarity;  //!< correlation of the two patches
     Matx22d covariance;
-    Matx22d map;  //!< of the surroundings, from the first image to the second
+    Matx22d warp;  //!< of the surroundings, from the first image to the second
 };
 
 //! Smooths a normalized image; the result is a part of a larger one, where its border is repeated.
 Mat preparedForAlignment(const Mat& normalized);
 
 /** A coarse look at two images around points inside them: false where they hardly agree, in a tenth of the time that it
- takes to see so by PatchAligner. @param map from the first image's surroundings to the second's. */
+ takes to see so by PatchAligner. @param warp from the first image's surroundings to the second's. */
 bool mayAgree(
-        const Mat& image1, const Vec2d& point1, const Mat& image2, const Vec2d& point2, const Matx22d& map);
+        const Mat& image1, const Vec2d& point1, const Mat& image2, const Vec2d& point2, const Matx22d& warp);
 
 //! Least-squares matching of patches, one after the other: what a thread needs for that.
 class PatchAligner

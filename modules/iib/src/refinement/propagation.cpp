@@ -155,9 +155,9 @@ template <class Marked> std::vector<int> unmarked(size_t end, const Marked& isMa
 struct Seed
 {
     Vec2d first, second;
-    Matx22d map;
+    Matx22d warp;
 
-    Vec2d predict(const Vec2d& point) const { return second + map * (point - first); }
+    Vec2d predict(const Vec2d& point) const { return second + warp * (point - first); }
     double tolerance(const Vec2d& point) const
     {
         return TOLERANCE + TOLERANCE_BY_DISTANCE * norm(point - first);
@@ -198,15 +198,15 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
             const Refinement& r = matches[done];
             if (!r.found.accepted)
                 continue;
-            seeds.push_back({places1[r.match.queryIdx], r.found.point, r.found.map});
+            seeds.push_back({places1[r.match.queryIdx], r.found.point, r.found.warp});
             seedPlaces.push_back(seeds.back().first);
         }
         const NearPoints ofSeeds(refiner.firstSize(), seedPlaces,
                 unmarked(seeds.size(), [](size_t) { return false; }), MOST_MATCHES);
         const std::vector<int> trusted = unmarked(
                 seeds.size(), [&](size_t i) { return i < before || !isTrusted((int)i, seeds, ofSeeds); });
-        const NearPoints ofTrusted(
-                refiner.firstSize(), seedPlaces, trusted, MOST_MATCHES);  // of the last round
+        // of the last round
+        const NearPoints ofTrusted(refiner.firstSize(), seedPlaces, trusted, MOST_MATCHES);
         const NearPoints ofSecond(refiner.secondSize(), places2,
                 unmarked(places2.size(), [&](size_t t) { return matched2[t] || !refiner.seesSecond(t); }),
                 MOST_KEYPOINTS);
@@ -225,9 +225,9 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
                 const Seed& seed = seeds[trust.begin()->second];
                 for (const Near& t :
                         ofSecond.find(seed.predict(places1[q]), seed.tolerance(places1[q]), CANDIDATES))
-                    if (refiner.mayMatch(q, t.second, seed.map))
+                    if (refiner.mayMatch(q, t.second, seed.warp))
                         ofParts[part].emplace_back(
-                                DMatch(q, t.second, std::numeric_limits<float>::max()), seed.map);
+                                DMatch(q, t.second, std::numeric_limits<float>::max()), seed.warp);
             }
         };
         parallel_for_(Range(0, parts), [&](const Range& range) {

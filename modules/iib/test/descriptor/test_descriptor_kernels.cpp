@@ -63,7 +63,9 @@ TEST(IIB_DescriptorKernels, cell_edges)
         for (int round = 0; round < 50; round++)
         {
             const Rect bounds = round % 2 ? Rect(0, 0, 100, 80) : Rect(-20, -10, 120, 90);
-            const Point2d corner(random.below(4800) / 32. - 30, random.below(4800) / 32. - 30);
+            Point2d corner;
+            corner.y = random.below(4800) / 32. - 30;
+            corner.x = random.below(4800) / 32. - 30;
             const double side = n + random.below(6400) / 32.;
             CellEdges edges;
             descriptorKernels().cellEdges(corner, side, n, bounds, edges);

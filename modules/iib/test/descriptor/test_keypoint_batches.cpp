@@ -54,7 +54,8 @@ Regions randomRegions(int count, Size image, int side, int seed)
     for (int i = 0; i < count; i++)
     {
         const int w = random.between(1, side + 1), h = random.between(1, side + 1);
-        regions.push_back(Rect(random.below(image.width - w), random.below(image.height - h), w, h));
+        const int y = random.below(image.height - h), x = random.below(image.width - w);
+        regions.push_back(Rect(x, y, w, h));
     }
     return regions;
 }

@@ -188,7 +188,10 @@ TEST(IIB_Rotation, of_positions_with_two_thirds_wrong)
             const double x = integers.below(640), y = integers.below(480), radians = degrees * CV_PI / 180;
             keypoints[0].push_back(KeyPoint((float)x, (float)y, 10));
             if (i % 3)
-                keypoints[1].push_back(KeyPoint((float)integers.below(640), (float)integers.below(480), 10));
+            {
+                const int wrongY = integers.below(480), wrongX = integers.below(640);
+                keypoints[1].push_back(KeyPoint((float)wrongX, (float)wrongY, 10));
+            }
             else
                 keypoints[1].push_back(
                         KeyPoint((float)(1.3 * (x * std::cos(radians) - y * std::sin(radians)) + 5),

@@ -53,9 +53,9 @@ RefinementScene::RefinementScene(int seed)
     shift = centre + Vec2d{upTo(3), upTo(3)} - linear * centre;
     // the same between fine pixels, whose centres are at (x + .5) / FINE - .5
     const Vec2d half((FINE - 1) / 2., (FINE - 1) / 2.), fineShift = shift * FINE + half - linear * half;
-    const Matx23d map(linear(0, 0), linear(0, 1), fineShift[0], linear(1, 0), linear(1, 1), fineShift[1]);
+    const Matx23d warp(linear(0, 0), linear(0, 1), fineShift[0], linear(1, 0), linear(1, 1), fineShift[1]);
     Mat moved;
-    warpAffine(fine, moved, map, fine.size(), INTER_CUBIC, BORDER_REFLECT);
+    warpAffine(fine, moved, warp, fine.size(), INTER_CUBIC, BORDER_REFLECT);
     Mat lit = photographed(moved);
     for (int y = 0; y < lit.rows; y++)
         for (int x = 0; x < lit.cols; x++)

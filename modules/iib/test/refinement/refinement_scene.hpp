@@ -8,7 +8,7 @@
 
 namespace opencv_test {
 
-/** Two views of one scene, 640 x 480: the second is deformed by an affine map (10 %, 5 degrees) and darker, with a
+/** Two views of one scene, 640 x 480: the second is deformed by an affine warp (10 %, 5 degrees) and darker, with a
  gradient of light and an offset; both with noise of 2 grey levels. Matches of true places, moved by up to .6 pixels in
  x and y. */
 struct RefinementScene
@@ -16,7 +16,7 @@ struct RefinementScene
     Mat images[2];
     std::vector<KeyPoint> keypoints[2];
     std::vector<DMatch> matches;
-    Matx22d linear;  //!< of the map from the first image to the second
+    Matx22d linear;  //!< of the warp from the first image to the second
     Vec2d shift;
 
     explicit RefinementScene(int seed);

@@ -111,7 +111,8 @@ TEST(IIB_RefinementAccuracy, is_drawn_to_no_part_of_a_pixel)
         std::vector<DMatch> matches;
         for (KeyPoint& kp : moved)
         {
-            kp.pt += Point2f(integers.between(-50, 51) / 100.f, integers.between(-50, 51) / 100.f);
+            kp.pt.y += integers.between(-50, 51) / 100.f;
+            kp.pt.x += integers.between(-50, 51) / 100.f;
             matches.push_back(DMatch((int)matches.size(), (int)matches.size(), 0));
         }
         const Refined r = refine(first, keypoints, second, moved, matches);
@@ -180,7 +181,8 @@ TEST(IIB_RefinementAccuracy, along_straight_edges)
                 const double along = rng.uniform(-150., 150.), beside = rng.uniform(-3., 3.);
                 const Point2f place(
                         Point2d(320, 240) + across * beside + Point2d(-across.y, across.x) * along);
-                const Point2f off((float)rng.gaussian(.7), (float)rng.gaussian(.7));
+                const double offY = rng.gaussian(.7), offX = rng.gaussian(.7);
+                const Point2f off((float)offX, (float)offY);
                 keypoints[0].push_back(KeyPoint(place, 20));
                 keypoints[1].push_back(KeyPoint(place + off, 20));
                 matches.push_back(DMatch(i, i, 0));

@@ -35,7 +35,7 @@ public:
         const double contrast = deviation(fixed);
         if (!normalize(fixed))
             return refused;
-        // derivatives by x, y and a linear map, less what changes of brightness and contrast explain
+        // derivatives by x, y and a linear warp, less what changes of brightness and contrast explain
         std::vector<std::vector<double>> derivatives(6);
         for (int d = 0; d < 2; d++)
         {
@@ -61,12 +61,12 @@ public:
             for (int j = 0; j < 6; j++)
                 normal(i, j) = sum(derivatives[i], derivatives[j]) + (i != j ? 0 : i < 2 ? 1e-5 : 5e-3);
 
-        Matx22d map = none;
+        Matx22d warp = none;
         Vec2d centre = point2 - beside, moved = point2;
         double similarity = 0;
         for (int step = 0; step < 30; step++)
         {
-            std::vector<double> values = samples(second, centre, map);
+            std::vector<double> values = samples(second, centre, warp);
             if (!normalize(values))
                 return refused;
             similarity = sum(values, fixed);
@@ -74,9 +74,9 @@ public:
             for (int i = 0; i < 6; i++)
                 gradient[i] = sum(derivatives[i], values);
             const Vec6d d = normal.inv() * gradient;
-            map = map * Matx22d(1 + d[2] / 16, d[3] / 16, d[4] / 16, 1 + d[5] / 16).inv();
-            centre -= map * Vec2d(d[0], d[1]);
-            moved = centre + map * beside;
+            warp = warp * Matx22d(1 + d[2] / 16, d[3] / 16, d[4] / 16, 1 + d[5] / 16).inv();
+            centre -= warp * Vec2d(d[0], d[1]);
+            moved = centre + warp * beside;
             if (!(cv::norm(moved - point2) < 20))
                 return refused;
         }
@@ -97,12 +97,12 @@ private:
 
     static Vec2d place(int i) { return Vec2d(2 * (i % N) - (N - 1), 2 * (i / N) - (N - 1)); }
 
-    static std::vector<double> samples(const Mat& image, const Vec2d& centre, const Matx22d& map)
+    static std::vector<double> samples(const Mat& image, const Vec2d& centre, const Matx22d& warp)
     {
         std::vector<double> values;
         for (int i = 0; i < N * N; i++)
         {
-            const Vec2d p = centre + map * place(i);
+            const Vec2d p = centre + warp * place(i);
             const int x = cvFloor(p[0]), y = cvFloor(p[1]);
             const auto at = [&](int dx, int dy) {
                 return image.at<double>(std::min(std::max(y + dy, 0), image.rows - 1),

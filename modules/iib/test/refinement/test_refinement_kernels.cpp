@@ -101,8 +101,8 @@ TEST_F(IIB_RefinementKernels, sample)
             }
         const int end = WINDOW << POSITION_BITS;
         ASSERT_LT(std::max(most.x - least.x, most.y - least.y), end);
-        grid.first =
-                Point(integers.between(-least.x, end - most.x), integers.between(-least.y, end - most.y));
+        grid.first.y = integers.between(-least.y, end - most.y);
+        grid.first.x = integers.between(-least.x, end - most.x);
         std::vector<short> samples(PATCH_SAMPLES + SHIFTS);
         short* const actual = &samples[trial % SHIFTS];
         kernels.sample(window.data(), grid, actual);

@@ -18,7 +18,10 @@ inline Mat randomDescriptors(uint64 seed, int rows, int bytes)
     {
         base.row(rng.uniform(0, base.rows)).copyTo(result.row(i));
         for (int flips = rng.uniform(0, bytes * 2); flips > 0; flips--)
-            result.at<uchar>(i, rng.uniform(0, bytes)) ^= (uchar)(1 << rng.uniform(0, 8));
+        {
+            const int bit = rng.uniform(0, 8), byte = rng.uniform(0, bytes);
+            result.at<uchar>(i, byte) ^= (uchar)(1 << bit);
+        }
     }
     return result;
 }

@@ -52,18 +52,27 @@ Mat texture(Size size, int depth, int seed)
     return result;
 }
 
+static Point pointIn(Size size, Integers& integers)
+{
+    const int y = integers.below(size.height), x = integers.below(size.width);
+    return Point(x, y);
+}
+
 Mat scene(Size size, int seed)
 {
     Integers integers(seed);
     Mat image(size, CV_8U, Scalar(128));
     for (int i = 0; i < 400; i++)
     {
-        const Point centre(integers.below(size.width), integers.below(size.height));
+        const Point centre = pointIn(size, integers);
         const int largest = i < 100 ? 60 : 16;
         const Scalar grey(integers.between(40, 216));
         if (i % 3 == 0)
-            ellipse(image, centre, Size(integers.between(4, largest), integers.between(4, largest)),
-                    integers.below(180), 0, 360, grey, FILLED);
+        {
+            const int turn = integers.below(180), height = integers.between(4, largest),
+                      width = integers.between(4, largest);
+            ellipse(image, centre, Size(width, height), turn, 0, 360, grey, FILLED);
+        }
         else
         {
             std::vector<Point> corners;
@@ -77,7 +86,7 @@ Mat scene(Size size, int seed)
     }
     for (int i = 0; i < 60; i++)  // blobs
     {
-        const Point centre(integers.below(size.width), integers.below(size.height));
+        const Point centre = pointIn(size, integers);
         circle(image, centre, 12, Scalar(integers.between(170, 216)), FILLED);
         circle(image, centre, integers.between(4, 8), Scalar(40), FILLED);
     }

@@ -23,8 +23,7 @@ private:
 
     const Map& map_;
     const bool lines_;
-    std::vector<double>
-            depths_;  //!< of each image of the map, how far what it sees lies; 0 if it sees nothing
+    std::vector<double> depths_;  //!< how far lies what each image of the map sees; 0 if it sees nothing
     Ptr<IIB> iib_;
     Ptr<HierarchicalMatcher> matcher_;
     ImageVoting votes_;

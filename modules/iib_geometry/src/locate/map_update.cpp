@@ -11,12 +11,10 @@
 namespace cv::iib {
 namespace {
 
-constexpr double APART =
-        .1;  // two images at one place: their distance over that of what they see, plus the angle
-constexpr double KNOWN = .5;  // share of an image's codes: with more inliers, the map knows the light there
-constexpr size_t LIGHTS = 8;  // added images that a map keeps so near each other
-constexpr uchar PATIENCE =
-        8;  // updates in a row that look for a code and do not find it, before it is dropped
+constexpr double APART = .1;   // of two images at one place, as distance() has it
+constexpr double KNOWN = .5;   // share of an image's codes: with more inliers, the map knows the light there
+constexpr size_t LIGHTS = 8;   // added images that a map keeps so near each other
+constexpr uchar PATIENCE = 8;  // updates in a row that do not find a code, before it is dropped
 constexpr size_t NEIGHBOURS = 10;  // added images that each is matched with
 
 bool atOnePlace(const LocatedImage& seen, const PosedImage& other)

@@ -13,8 +13,7 @@ namespace cv::iib {
 namespace {
 
 constexpr size_t SUREST = 300;  // matches of the fewest different bits, among which the pose is looked for
-constexpr double MAX_ERROR =
-        .006;  // of the longer side: an inlier's distance from where the pose has its point
+constexpr double MAX_ERROR = .006;   // of the longer side, from where the pose has an inlier's point
 constexpr double LEAST_SHARE = .02;  // in an unknown place a few matches agree by chance
 constexpr double MAX_BOUND = .1;     // of the distance to the points: three standard deviations of the place
 constexpr size_t WORTH = 16;         // matches with an image of the map, for which they are refined

@@ -34,8 +34,8 @@ std::vector<LinearMatch> linearize(const std::vector<Match>& matches, const Lens
         const double weight = 1 / (matches[i].deviation * matches[i].deviation + error.dot(error));
         if (std::isnan(weight))
             continue;
-        const Matx23d byMoved =
-                matches[i].errorProjection * byPoint[i] * rotation;  // of the point in the world's axes
+        // by the point in the world's axes
+        const Matx23d byMoved = matches[i].errorProjection * byPoint[i] * rotation;
         const Matx23d byTurn = byMoved * crossProduct(Vec3d(points[i]) - centre);
         for (int row = 0; row < 2; row++)
             for (int column = 0; column < 3; column++)
@@ -216,7 +216,7 @@ bool clusteredCovariance(
     const Rect2d span = boundingRect(pixels);
     std::map<std::pair<int, int>, Vec6d> gradients;  // of the clusters
     std::vector<double> errors;
-    Matx66d curvature = Matx66d::zeros(), pulled = Matx66d::zeros();
+    Matx66d curvature = Matx66d::zeros(), ofGradient = Matx66d::zeros();
     for (size_t i = 0; i < near.size(); i++)
     {
         const LinearMatch& m = near[i];
@@ -227,13 +227,14 @@ bool clusteredCovariance(
                 int(CLUSTERS * (pixels[i].y - span.y) / span.height)}] += m.weight * (m.byPose.t() * m.error);
     }
     for (const auto& cluster : gradients)
-        pulled += cluster.second * cluster.second.t();
+        ofGradient += cluster.second * cluster.second.t();
     Vec6d told;
     if (!eigen(curvature, told) || !(told[5] > LEAST_TOLD * told[0]))
         return false;
     const double scale = deviationOf(errors), clusters = double(gradients.size());
     const Matx66d back = curvature.inv(DECOMP_CHOLESKY);
-    covariance = scale * scale * covariance + clusters / std::max(clusters - 6, 1.) * back * pulled * back;
+    covariance =
+            scale * scale * covariance + clusters / std::max(clusters - 6, 1.) * back * ofGradient * back;
     return true;
 }
 

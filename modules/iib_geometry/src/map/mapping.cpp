@@ -87,22 +87,32 @@ private:
     std::mutex mutex_;
 };
 
+//! Why an image is left out, behind its name; or nothing.
+std::string problemOf(const Photograph& photograph, const Size& size)
+{
+    if (photograph.pixels.empty())
+        return " cannot be read";
+    try
+    {
+        checkPhotograph(photograph.pixels, photograph.mask, size);
+    }
+    catch (const Exception& e)
+    {
+        return ": " + e.err;
+    }
+    return "";
+}
+
 void describe(std::vector<MapImage>& images, const ImageReader& read, const MapOptions& options, Steps& steps)
 {
     const Ptr<IIB> iib = describerOf(options.orbAndAkaze, options.points);
+    std::vector<std::string> problems(images.size());
     inParallel(images.size(), [&](size_t i) {
         MapImage& image = images[i];
         const Photograph photograph = read(image.name);
-        if (!photograph.pixels.empty())
+        std::string& problem = problems[i] = problemOf(photograph, image.camera.size);
+        if (problem.empty())
         {
-            try
-            {
-                checkPhotograph(photograph.pixels, photograph.mask, image.camera.size);
-            }
-            catch (const Exception& e)
-            {
-                CV_Error(e.code, image.name + ": " + e.err + ": give the images of which the model was made");
-            }
             const Upright upright(photograph.pixels.size(), photograph.orientation);
             image.camera = upright.camera(image.camera);
             image.cameraFromWorld = upright.pose(image.cameraFromWorld);
@@ -110,10 +120,18 @@ void describe(std::vector<MapImage>& images, const ImageReader& read, const MapO
                     options.maxSize);
         }
         image.codes.create(int(image.pixels.size()), iib->descriptorSize(), CV_8U);  // also of none
-        steps.step(photograph.pixels.empty() ? image.name + " cannot be read: left out of the map" : "");
+        if (!problem.empty())
+            problem = image.name + problem + ": left out of the map";
+        steps.step(problem);
     });
-    if (std::all_of(images.begin(), images.end(), [](const MapImage& i) { return i.pixels.empty(); }))
-        CV_Error(Error::StsError, "none of the model's images can be read, or they are empty");
+    if (std::any_of(images.begin(), images.end(), [](const MapImage& i) { return !i.pixels.empty(); }))
+        return;
+    const auto first =
+            std::find_if(problems.begin(), problems.end(), [](const std::string& p) { return !p.empty(); });
+    CV_Error(Error::StsError,
+            "no point is found in any of the model's images: " +
+                    (first == problems.end() ? "they are empty"
+                                             : "give those of which it was made; " + *first));
 }
 
 void checkOptions(const MapOptions& options)

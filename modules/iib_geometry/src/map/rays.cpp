@@ -91,8 +91,8 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
         found.rays.insert(found.rays.end(), own.begin(), own.end());
     }
     std::vector<std::vector<RayMatch>> links(pairs.size());
-    std::vector<std::pair<size_t, size_t>> counts(
-            pairs.size());  // of matches that the poses did not guide, and that fit
+    // of matches that the poses did not guide, and that fit
+    std::vector<std::pair<size_t, size_t>> counts(pairs.size());
     inParallel(pairs.size(), [&](size_t n) {
         const size_t a = pairs[n].first, b = pairs[n].second;
         const Mat &codes = images[a].codes, &others = images[b].codes;

@@ -22,11 +22,10 @@ const double LEAST_SCATTER = .33;
 match. Noise and bent lenses have up to 3.9 of numbers, or .23 of matches; untrue models that are told as surer than they are 5.3 and .29
 (103 pairs under other light, moved by transforms of each kind). */
 const double LEAST_GAIN = 4.5, LEAST_GAIN_OF_MATCH = .25;
-const double MOST_PARALLAX =
-        .25;  // of the places that agree with the transform may move as if the camera had moved
-const double LEAST_PARALLAX = 6;  // working pixels: shadows of another light move by less
-const int WORKING_SIZE = 1024;    // as HessianDetector has it
-const double ANY = 1e3;           // deviation of a number of a transform
+const double MOST_PARALLAX = .25;  // of the places that agree may move as if the camera had moved
+const double LEAST_PARALLAX = 6;   // working pixels: shadows of another light move by less
+const int WORKING_SIZE = 1024;     // as HessianDetector has it
+const double ANY = 1e3;            // deviation of a number of a transform
 
 const double LEAST_REFINED = .5;  // of the matches that agree at the working size
 /* Of a match's deviation: what light and lens shift in all matches alike, as far as pairs under other lamps and exposures show it

@@ -179,8 +179,7 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
     typedef typename Problem::Model Model;
     const int fewestTrials = 150;
     const double roughly = 1e-3;  // how much less of its loss a model is polished for
-    const size_t most =
-            10;  // models polished in the end: that of the least loss need not lead to the best one
+    const size_t most = 10;  // are polished in the end: that of the least loss need not lead to the best one
     const double missed = 1e-4;  // probability that no sample was of right matches alone
     const double none = std::numeric_limits<double>::max();
     Fit<Problem> fit;

@@ -106,27 +106,27 @@ Square<typename Problem::Step> covarianceOf(
 
     struct Part
     {
-        Square<Step> bends = Square<Step>::zeros();
-        Step pull, along;  //!< sums of weight r J, and of weight J
+        Square<Step> hessian = Square<Step>::zeros();
+        Step gradient, along;  //!< sums of weight r J, and of weight J
     };
     std::vector<Part> all(PARTS_ACROSS * PARTS_DOWN);
-    Square<Step> hessian = Square<Step>::zeros(), pulls = hessian;
+    Square<Step> hessian = Square<Step>::zeros(), ofGradient = hessian;  // its covariance
     for (const Row<Step>& row : rows)
     {
         Part& part = all[parts[row.match]];
         const double weight = 1 / (1 + row.r2 * perScale2);
-        addProduct(row.J, bend * weight, part.bends);
-        addProduct(row.J, noise2 * square(meanSlope), pulls);
-        part.pull += weight * row.r * row.J;
+        addProduct(row.J, bend * weight, part.hessian);
+        addProduct(row.J, noise2 * square(meanSlope), ofGradient);
+        part.gradient += weight * row.r * row.J;
         part.along += weight * row.J;
     }
     for (Part& part : all)
     {
-        mirror(part.bends);
-        hessian += part.bends;
-        addProduct(part.along, SHARED * noise2, pulls);
+        mirror(part.hessian);
+        hessian += part.hessian;
+        addProduct(part.along, SHARED * noise2, ofGradient);
     }
-    mirror(pulls);
+    mirror(ofGradient);
     hessian -= problem.noiseInDerivatives(fit.model, rows, noise2) * bend;
     const double least = noise2 / square(largest);
     Square<Step> unknown;
@@ -135,9 +135,9 @@ Square<typename Problem::Step> covarianceOf(
     std::vector<Step> changes;
     Step mean;
     for (const Part& part : all)
-        if (part.bends != Square<Step>::zeros())
+        if (part.hessian != Square<Step>::zeros())
         {
-            changes.push_back(inverseWithFloor(hessian - part.bends, least) * part.pull);
+            changes.push_back(inverseWithFloor(hessian - part.hessian, least) * part.gradient);
             mean += changes.back();
         }
     const double groups = (double)changes.size();
@@ -145,7 +145,7 @@ Square<typename Problem::Step> covarianceOf(
     for (const Step& change : changes)
         addProduct(Step(change - mean * (1 / groups)), FEW_PARTS * (groups - 1) / groups, spread);
     mirror(spread);
-    return limited(inverse * pulls * inverse + spread + unknown * square(largest), largest);
+    return limited(inverse * ofGradient * inverse + spread + unknown * square(largest), largest);
 }
 
 }  // namespace cv::iib

@@ -21,7 +21,7 @@ constexpr int SAMPLE_BITS = 5;   //!< samples are normalized grey levels of -128
 constexpr int WEIGHT_BITS = 11;  //!< of the sum of samples
 constexpr int GAIN_BITS = 8;     //!< gains are below 256, samples 2^12: products fit 32 bits
 
-//! Derivatives of samples by the six parameters: x, y, and the four of a linear map, d/dx and d/dy times places x and
+//! Derivatives of samples by the six parameters: x, y, and the four of a linear warp, d/dx and d/dy times places x and
 //! y.
 constexpr int PARAMETERS = 6;
 
@@ -51,7 +51,7 @@ struct PatchWeights
 struct PatchTemplate
 {
     short samples[PATCH_SAMPLES];
-    short derivatives[PARAMETERS][PATCH_SAMPLES];       //!< those by the linear map are halved
+    short derivatives[PARAMETERS][PATCH_SAMPLES];       //!< those by the linear warp are halved
     short weights[SUMS - SUM_TEMPLATE][PATCH_SAMPLES];  //!< of SUM_TEMPLATE and after, halved
 };
 

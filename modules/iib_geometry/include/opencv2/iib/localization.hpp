@@ -124,7 +124,7 @@ Keypoints of each image are described, matched with those of the images that see
 image its grey pixels, reduced to 1024 on the longer side: 0.3 MB for 640 x 480.
 @param model folder of a model, binary or text, in any unit and at any distance from its origin. Its points are not read: the
 images' keypoints tell which of them see the same.
-@param images gives the model's images.
+@param images gives the model's images. Those that cannot be read or are of another size than their camera are left out.
 @param map folder to write: `map.iib`, and a COLMAP model of the same points. A map that is there is replaced: who reads
 meanwhile gets the old one or the new one. A folder that holds anything else is refused before work begins.
 @param options what it is made of; a number stands for one of keypoints alone.
