@@ -117,7 +117,7 @@ def suites(source, area):
     """A filter for the test suites of `area`."""
     names = set()
     module, files = tests_of(area)
-    for path in sorted((source / "modules" / module / "test").glob(files)):
+    for path in sorted((source / "modules" / module / "test").rglob(files)):
         text = path.read_text()
         names |= set(re.findall(r"^TEST(?:_P|_F)?\((\w+),", text, re.MULTILINE))
     if not names:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "alignment_pictures.hpp"
-#include "derivatives.hpp"
+#include "../derivatives.hpp"
 #include "pose/planar_problem.hpp"
 #include "pose/uncertainty.hpp"
 

@@ -5,9 +5,9 @@
 #include <map>
 #include <random>
 
-#include "derivatives.hpp"
+#include "../derivatives.hpp"
 #include "locate/imu_motion.hpp"
-#include "test_folder.hpp"
+#include "../test_folder.hpp"
 
 namespace opencv_test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "map/lines.hpp"
-#include "wall.hpp"
+#include "../wall.hpp"
 
 // The same file as in a build without OpenCV's module line_descriptor.
 #undef IIB_LINE_DESCRIPTOR
@@ -13,7 +13,7 @@ using namespace ::cv::iib;
 Segments findSegments(const Picture&);
 }  // namespace iib
 }  // namespace cv
-#include "../src/map/segments.cpp"
+#include "../../src/map/segments.cpp"
 }  // namespace without_line_descriptor
 
 namespace opencv_test {

@@ -3,7 +3,7 @@
 #include "map/camera_pose.hpp"
 #include "map/map_error.hpp"
 #include "map/triangulation.hpp"
-#include "test_precomp.hpp"
+#include "../test_precomp.hpp"
 
 namespace opencv_test {
 namespace {

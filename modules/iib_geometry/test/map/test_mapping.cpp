@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
-#include "derivatives.hpp"
+#include "../derivatives.hpp"
 #include "map/colmap_model.hpp"
 #include "map/triangulation.hpp"
-#include "wall.hpp"
+#include "../wall.hpp"
 
 #ifndef _WIN32
 #include <sys/stat.h>

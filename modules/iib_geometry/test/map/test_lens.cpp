@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "derivatives.hpp"
+#include "../derivatives.hpp"
 #include "map/camera_pose.hpp"
 #include "map/lens.hpp"
-#include "wall.hpp"
+#include "../wall.hpp"
 
 namespace opencv_test {
 namespace {

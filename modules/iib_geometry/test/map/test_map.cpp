@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "map/colmap_model.hpp"
-#include "wall.hpp"
+#include "../wall.hpp"
 #include "opencv2/iib/detail/checked_file.hpp"
 
 namespace opencv_test {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "opencv2/imgproc.hpp"
-#include "test_precomp.hpp"
+#include "../test_precomp.hpp"
 
 namespace opencv_test {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pose/two_views.hpp"
-#include "test_precomp.hpp"
+#include "../test_precomp.hpp"
 
 namespace opencv_test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "wall.hpp"
+#include "../wall.hpp"
 
 namespace opencv_test {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "opencv2/iib/refinement.hpp"
-#include "wall.hpp"
+#include "../wall.hpp"
 
 namespace opencv_test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "derivatives.hpp"
+#include "../derivatives.hpp"
 #include "pose/epipolar_problem.hpp"
 #include "pose/five_points.hpp"
 #include "pose/real_roots.hpp"

@@ -2,7 +2,7 @@
 
 #include "locate/pose_search.hpp"
 #include "map/camera_pose.hpp"
-#include "test_precomp.hpp"
+#include "../test_precomp.hpp"
 
 namespace opencv_test {
 namespace {
