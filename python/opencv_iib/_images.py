@@ -21,7 +21,7 @@ IMAGES = (*TIFF, b'\xff\xd8', b'\x89PNG', b'RIFF', b'BM', *(b'P%d' % kind for ki
 
 
 def find_images(folder: Path) -> list[str]:
-    """Paths of images below `folder`, relative to it, with '/', sorted: COLMAP's names.
+    """Paths of images below `folder`, relative to it, with '/', in_order: COLMAP's names.
 
     :raises OSError: for a folder that cannot be read.
     """
@@ -33,12 +33,12 @@ def find_images(folder: Path) -> list[str]:
         for file in files:
             if file.lower().endswith(SUFFIXES):
                 names.append(os.path.relpath(os.path.join(root, file), folder).replace(os.sep, '/'))
-    return sorted(names)
+    return sorted(names, key=in_order)
 
 
-def in_order(name: str) -> list[tuple[int, str]]:
+def in_order(name: str) -> tuple[list[tuple[int, str]], str]:
     """A key to sort names by as people do: 2 before 10."""
-    return [(int(part), '') if n % 2 else (-1, part) for n, part in enumerate(re.split('([0-9]+)', name))]
+    return [(int(part), '') if n % 2 else (-1, part) for n, part in enumerate(re.split('([0-9]+)', name))], name
 
 
 def stamp(path: str) -> str:
@@ -186,10 +186,11 @@ def _scaled(image: np.ndarray) -> np.ndarray:
     if not values.size:
         raise ValueError('the image holds no finite number')
     low, high = np.percentile(values[::1 + values.size // 1000000], (.01, 99.99))
+    low, high = float(low), float(high)  # floats of 32 bits have no number for what lies between their largest ones
     if high > low:
         values = values[(values >= 2 * low - high) & (values <= 2 * high - low)]
     low, high = float(values.min()), float(values.max())
-    with np.errstate(invalid='ignore'):
+    with np.errstate(invalid='ignore', over='ignore'):
         return np.nan_to_num(np.rint((image - low) * (255 / ((high - low) or 1))).clip(0, 255)).astype(np.uint8)
 
 

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import __version__
-from opencv_iib._arguments import InvalidOption, Path
+from opencv_iib._arguments import InvalidOption, MissingFile, Path, sequence
 from opencv_iib._exif import TIFF, exif_orientation, geo_entries, geo_entries_of_part, no_data
-from opencv_iib._files import check_folder, is_in, is_same, new_results, plan, read_bytes
+from opencv_iib._files import check_folder, check_images, is_in, is_same, new_results, plan, read_bytes
 from opencv_iib._images import FORMATS, Masks, can_be, decode_pages, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
@@ -117,6 +117,7 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     options = _Options(model, exif, None if mask is None else os.path.abspath(mask), max_size, format, crop, interpolation)
     options.check()
     crew, masks = Threads(thread_count(workers)), Masks(options.mask)
+    check_images(reference)
     paths = [path for path in _expanded(images, out) if not is_same(path, reference)]
     if not paths:
         raise ValueError(f'no image to align but the reference, {reference}')
@@ -167,18 +168,20 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
 def _expanded(images: Sequence[Path], out: str) -> list[str]:
     """Files of names, folders and patterns, each once. Those that earlier calls have written below such a folder are left out.
 
-    :raises FileNotFoundError: for a pattern that nothing has.
+    :raises MissingFile: for a name or a pattern that nothing has.
     """
     paths: dict[str, None] = {}
-    for image in images:
+    for image in sequence(images, 'images', 'paths'):
         given = os.fspath(image)
         found = [given]
         if os.path.isdir(given):
             found = [path for path in (os.path.join(given, name) for name in find_images(given)) if not is_in(path, out)]
         elif not os.path.lexists(given) and glob.escape(given) != given:
-            found = sorted(glob.glob(given, recursive=True))
+            found = sorted(glob.glob(given, recursive=True), key=in_order)
             if not found:
-                raise FileNotFoundError(f'no image is called {given}')
+                raise MissingFile(f'no image is called {given}')
+        else:
+            check_images(given)
         paths.update(dict.fromkeys(found))
     return list(paths)
 

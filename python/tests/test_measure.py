@@ -133,7 +133,7 @@ class Match(Commands):
         self.assertEqual(self.rows('m.csv'), [])
         status, text, _ = run_command('match', a, flat, '--out', out, '--camera', 'PINHOLE,480,360,400,400,240,180')
         self.assertEqual((status, text.splitlines()[-1]), (3, 'no pose agrees with five matches or more'))
-        self.check_error('no folder', 'match', a, a, '--out', self.folder / 'none/m.csv')
+        self.check_mistake('no folder', 'match', a, a, '--out', self.folder / 'none/m.csv')
         for arguments, told in ((['--camera', 'PINHOLE,480,360,400'], 'PINHOLE'), (['--camera', 'PINHOLE,9,9,400,400,240,180'], '480 x 360'),
                                 (['--camera', 'simple_pinhole,480,360,400,240,180'] * 3, '3 cameras'),
                                 (['--picture', self.folder / 'no.suffix'], 'end its name')):
@@ -193,19 +193,19 @@ class Match(Commands):
         before = Path(a).read_bytes()
         (self.folder / 'link.png').symlink_to('a.png')
         for arguments in (['--out', a], ['--out', self.folder / 'link.png'], ['--picture', a], ['--out', 'x.png', '--picture', 'x.png']):
-            self.check_error('give what is written a name of its own', 'match', a, b, *arguments)
-        self.check_error('give what is written a name of its own', 'demo', a, b, '--out', a)
+            self.check_mistake('give what is written a name of its own', 'match', a, b, *arguments)
+        self.check_mistake('give what is written a name of its own', 'demo', a, b, '--out', a)
         for command, option in (('match', '--picture'), ('match', '--out'), ('demo', '--out')):
-            self.check_error('is an input too', command, b, b, '--mask', a, option, a)
+            self.check_mistake('is an input too', command, b, b, '--mask', a, option, a)
         self.assertEqual(Path(a).read_bytes(), before)
         # and what cannot be written is told before work
         with mock.patch('opencv_iib.colmap.features.Features.__call__', side_effect=AssertionError):
-            self.check_error('no folder', 'match', a, b, '--out', self.folder / 'none/m.csv')
-            self.check_error('no folder', 'match', a, b, '--picture', self.folder / 'none/m.png')
+            self.check_mistake('no folder', 'match', a, b, '--out', self.folder / 'none/m.csv')
+            self.check_mistake('no folder', 'match', a, b, '--picture', self.folder / 'none/m.png')
             self.check_mistake('end its name in', 'match', a, b, '--picture', self.folder / 'm.foo')
             self.check_mistake('end its name in', 'demo', a, b, '--out', self.folder / 'm.foo')
             for out, told in (('none/m.png', 'no folder'), ('.', 'is a folder'), ('m' * 300 + '.png', 'm.png cannot be written')):
-                self.check_error(told, 'demo', a, b, '--out', self.folder / out)
+                self.check_mistake(told, 'demo', a, b, '--out', self.folder / out)
 
     def test_a_wide_lens_and_what_lies_beyond_it(self):
         wide = Camera('opencv_fisheye', 1280, 960, (400, 400, 640, 480, .02, -.01, 0, 0))
@@ -273,7 +273,11 @@ class Align(Commands):
         mine.write_text('precious')
         with self.assertRaises(FileExistsError):
             align(paths[0], paths, str(out))
-        for arguments, told in ((['gone.png', paths[1]], 'gone.png'), ([paths[0], paths[1]], 'holds mine.png'), (paths[:1] * 2, 'but the reference')):
+        for gone in (['gone.png', paths[1]], [paths[0], 'gone.png'], [*paths[:2], 'gone.png']):
+            with mock.patch('opencv_iib.align.ImageAligner', side_effect=AssertionError):
+                self.check_mistake('there is no file gone.png', 'align', *gone, '--out', self.folder / 'none')
+        self.assertFalse((self.folder / 'none').exists())
+        for arguments, told in (([paths[0], paths[1]], 'holds mine.png'), (paths[:1] * 2, 'but the reference')):
             self.check_error(told, 'align', *arguments, '--out', out)
         self.assertEqual(mine.read_text(), 'precious')
         mine.unlink()
@@ -287,7 +291,7 @@ class Align(Commands):
         foreign.mkdir()
         (foreign / 'transforms.csv').write_text('image,verdict\n')
         self.check_error('holds transforms.csv', 'align', *paths[:2], '--out', foreign)
-        self.check_error('would be replaced', 'align', paths[0], out / 'a&b.png', '--out', out)
+        self.check_mistake('would be replaced', 'align', paths[0], out / 'a&b.png', '--out', out)
         self.assertEqual(run_command('align', *paths[:2], '--out', self.folder / 'new', '--model', 'similarity')[0], 0)
         self.assertEqual(run_command('align', paths[0], self.write('t.png', texture(300, 200, seed=9)), '--out', self.folder / 'n')[0], 3)
 
@@ -296,6 +300,8 @@ class Align(Commands):
         align(paths[0], paths[1:], str(self.folder / 'out'))
         self.assertEqual(re.findall(r'src="(\d+\.png)', (self.folder / 'out/index.html').read_text()), ['1.png', '2.png', '10.png'])
         self.assertEqual([row['file'] for row in self.rows('out/transforms.csv')], ['1.png', '10.png', '2.png'])
+        for images in ([self.folder], [self.folder / '*.png']):
+            self.assertEqual([Path(each.name).name for each in align(paths[0], images, str(self.folder / 'out'))], ['1.png', '2.png', '10.png'])
 
     @unittest.skipIf(os.name == 'nt', 'such names cannot be had there')
     def test_one_image_ends_nothing(self):
@@ -354,7 +360,7 @@ class Align(Commands):
         paths = self.pictures('r.png', 'f/1.png', 'f/2.png', 'f/more/1.png', '[x].png')
         for images, count in (([self.folder / 'f'], 3), ([self.folder / 'f/*.png', paths[1]], 2), ([paths[4], self.folder / '[f]/**/*.png'], 4)):
             self.assertEqual(len(self.align(paths[0], *images)), count)
-        self.check_error('no image is called', 'align', paths[0], self.folder / '*.jpg', '--out', self.folder / 'out')
+        self.check_mistake('no image is called', 'align', paths[0], self.folder / '*.jpg', '--out', self.folder / 'out')
         self.assertEqual(run_command('align', paths[0], self.folder / 'f', '--out', self.folder / 'f/out')[0], 0)
         status, out, _ = run_command('align', paths[0], self.folder / 'f', '--out', self.folder / 'f/out')
         self.assertEqual((status, out.splitlines()[-1][-25:]), (0, '3 of 3 images are aligned'))
