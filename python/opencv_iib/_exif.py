@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import struct
-from typing import Any, Iterator, Optional
+from typing import Any, Iterator, Optional, Union
 
 import numpy as np
 
@@ -63,12 +63,17 @@ def _exif(data: bytes) -> bytes:
     return b''
 
 
+def _order(tiff: Union[bytes, bytearray]) -> str:
+    """Of its bytes, as struct names it."""
+    return '<' if tiff[:1] == b'I' else '>'
+
+
 def _directory(tiff: bytes, at: int) -> tuple[dict[int, Any], int]:
     """By tag, the numbers or the text of each entry of a TIFF directory, and where the next one begins, or 0.
 
     :raises struct.error: for one that is cut off.
     """
-    order = '<' if tiff[:1] == b'I' else '>'
+    order = _order(tiff)
     count, = struct.unpack_from(order + 'H', tiff, at)
     found: dict[int, Any] = {}
     for entry in range(at + 2, at + 2 + 12 * count, 12):
@@ -88,7 +93,7 @@ def _directory(tiff: bytes, at: int) -> tuple[dict[int, Any], int]:
 
 def _first_directory(tiff: bytes) -> dict[int, Any]:
     """:raises struct.error: if there is none."""
-    return _directory(tiff, struct.unpack_from('<I' if tiff[:1] == b'I' else '>I', tiff, 4)[0])[0]
+    return _directory(tiff, struct.unpack_from(_order(tiff) + 'I', tiff, 4)[0])[0]
 
 
 def _number(entries: dict[int, Any], tag: int, default: float) -> float:
@@ -97,19 +102,22 @@ def _number(entries: dict[int, Any], tag: int, default: float) -> float:
     return default if isinstance(values, str) else values[0]
 
 
-def pages_of_tiff(data: bytes) -> tuple[int, int]:
-    """How many, and channels of the first; 1 of each for other files, and for the 64-bit kind, whose pages are not counted."""
-    if data[:4] not in TIFF[:2]:
-        return 1, 1
-    samples, seen = 1, set[int]()
+def pages_of_tiff(data: bytes) -> tuple[list[int], int]:
+    """Where their directories begin, and channels of the first; none and 1 for other files, and for the 64-bit kind."""
+    places: dict[int, None] = {}
+    samples = 1
     with contextlib.suppress(struct.error):
-        at, = struct.unpack_from('<I' if data[:1] == b'I' else '>I', data, 4)
-        while at and at not in seen:
-            entries, following = _directory(data, at)
-            samples = samples if seen else int(_number(entries, SAMPLES, 1))
-            seen.add(at)
-            at = following
-    return max(len(seen), 1), samples
+        at = struct.unpack_from(_order(data) + 'I', data, 4)[0] if data[:4] in TIFF[:2] else 0
+        while at and at not in places:
+            places[at] = None  # also of one that is cut off
+            entries, at = _directory(data, at)
+            samples = samples if len(places) > 1 else int(_number(entries, SAMPLES, 1))
+    return list(places), samples
+
+
+def begin_at(tiff: bytearray, place: int) -> None:
+    """Makes the page whose directory begins there the first one."""
+    struct.pack_into(_order(tiff) + 'I', tiff, 4, place)
 
 
 def no_data(data: bytes) -> str:

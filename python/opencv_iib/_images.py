@@ -2,17 +2,17 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import os
 import re
 import struct
-import tempfile
 import zlib
-from typing import Any, Iterable, NoReturn, Optional, Sequence
+from typing import Any, Iterable, NoReturn, Optional, Sequence, Union
 
 import numpy as np
 
 from opencv_iib._arguments import InvalidOption, MissingFile, Path
-from opencv_iib._exif import ASCII, LONG, NO_DATA, SAMPLES, SHORT, TIFF, Entry, exif_orientation, is_cut_off, packed, pages_of_tiff
+from opencv_iib._exif import ASCII, LONG, NO_DATA, SAMPLES, SHORT, TIFF, Entry, begin_at, exif_orientation, is_cut_off, packed, pages_of_tiff
 from opencv_iib._files import read_bytes, write_whole
 
 SUFFIXES = ('.jpg', '.jpeg', '.png', '.tif', '.tiff', '.bmp', '.webp', '.ppm', '.pgm')
@@ -110,7 +110,7 @@ def _decode(data: bytes, colour: bool) -> np.ndarray:
     mode = (cv2.IMREAD_COLOR if colour else cv2.IMREAD_GRAYSCALE) | cv2.IMREAD_IGNORE_ORIENTATION | cv2.IMREAD_ANYDEPTH
     # What is not of 8 bits as the file has it. Of TIFF first, where cv2 gives floats in no other way, and prints of that.
     if data.startswith(TIFF):
-        image = decode_pages(data)[0]
+        image = decode_pages(data, first_alone=True)[0]
     if image is None or (image.dtype == np.uint8 and image.shape[2:] < (5,)):
         image = _imdecode(data, mode)
     if image.dtype != np.uint8 and not data.startswith(TIFF):
@@ -118,36 +118,39 @@ def _decode(data: bytes, colour: bool) -> np.ndarray:
     return in_8_bits(image, colour)
 
 
-def decode_pages(data: bytes) -> list[np.ndarray]:
+def decode_pages(data: bytes, first_alone: bool = False) -> list[np.ndarray]:
     """As a file has it: H x W, or with the channels last, BGR and alpha where they are 3 or 4; of a TIFF all pages of one shape.
 
     :raises ValueError: as _decode.
     """
     cv2 = import_cv2()
     _check(data)
-    pages, samples = pages_of_tiff(data)
-    if samples in (1, 3, 4) and pages == 1:
+    places, samples = pages_of_tiff(data)
+    if samples not in (1, 3, 4):
+        read = _by_tifffile(data, samples)
+    elif len(places) < 2 or first_alone:
         return [_imdecode(data, cv2.IMREAD_UNCHANGED)]
-    with tempfile.TemporaryDirectory() as folder:  # cv2 reads pages of files alone, and none of a path that is not UTF-8
-        path = os.path.join(folder, 'pages.tif')
-        with open(path, 'wb') as file:
-            file.write(data)
-        if samples in (1, 3, 4):
-            read = list(cv2.imreadmulti(path, flags=cv2.IMREAD_UNCHANGED)[1])
-        else:
-            try:
-                import tifffile  # type: ignore[import-not-found,unused-ignore]
-            except ImportError:
-                raise ValueError(f'a TIFF of {samples} channels, which cv2 cannot read: pip install tifffile, or store each as a page') from None
-            try:
-                with tifffile.TiffFile(path) as tiff:
-                    read = [page.asarray() for page in tiff.pages]
-            except Exception as e:  # of many kinds
-                raise ValueError(f'not an image that tifffile reads: {e}') from None
-            read = [page if page.shape[0] != samples else np.moveaxis(page, 0, 2) for page in read]
+    else:  # cv2 reads pages of files alone, and of no name that is not in the system's letters
+        content, read = bytearray(data), []
+        for place in places:
+            begin_at(content, place)
+            read.append(_imdecode(content, cv2.IMREAD_UNCHANGED))
+    return [page for page in read if page.shape == read[0].shape and page.dtype == read[0].dtype]  # not thumbnails
+
+
+def _by_tifffile(data: bytes, samples: int) -> list[np.ndarray]:
+    try:
+        import tifffile  # type: ignore[import-not-found,unused-ignore]
+    except ImportError:
+        raise ValueError(f'a TIFF of {samples} channels, which cv2 cannot read: pip install tifffile, or store each as a page') from None
+    try:
+        with tifffile.TiffFile(io.BytesIO(data)) as tiff:
+            read = [page.asarray() for page in tiff.pages]
+    except Exception as e:  # of many kinds
+        raise ValueError(f'not an image that tifffile reads: {e}') from None
     if not read:
         raise ValueError('the image is damaged or cut off')
-    return [page for page in read if page.shape == read[0].shape and page.dtype == read[0].dtype]  # not thumbnails
+    return [page if page.shape[0] != samples else np.moveaxis(page, 0, 2) for page in read]
 
 
 def _check(data: bytes) -> None:
@@ -157,7 +160,7 @@ def _check(data: bytes) -> None:
         raise ValueError('the file is cut off: a JPEG without its end')
 
 
-def _imdecode(data: bytes, flags: int) -> np.ndarray:
+def _imdecode(data: Union[bytes, bytearray], flags: int) -> np.ndarray:
     cv2 = import_cv2()
     try:
         image = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
@@ -242,7 +245,7 @@ class Masks:
         if not path:
             return None
         try:
-            mask = decode_pages(read_bytes(path))[0]
+            mask = decode_pages(read_bytes(path), first_alone=True)[0]
         except ValueError as e:
             raise ValueError(f'its mask {path}: {e}') from None
         mask = (mask if mask.ndim == 2 else mask[..., :3].any(axis=2)).astype(bool).astype(np.uint8)

@@ -5,6 +5,7 @@ import tempfile
 import warnings
 import zlib
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -12,8 +13,8 @@ import opencv_iib
 from collection import Collection
 from opencv_iib.colmap import FeatureOptions
 from opencv_iib.colmap.features import DETECTORS, Features, to_colmap
-from opencv_iib._exif import exif_focal_length, exif_orientation, gps_place
-from opencv_iib._images import in_8_bits, read_colour, read_grey
+from opencv_iib._exif import SAMPLES, exif_focal_length, exif_orientation, gps_place, pages_of_tiff
+from opencv_iib._images import decode_grey, decode_pages, in_8_bits, read_colour, read_grey, write_picture
 from support import cv2, texture
 
 
@@ -82,6 +83,24 @@ class Files(Collection):
         file.write_bytes(encoded(np.full((40, 40), np.nan, np.float32), '.tif'))
         with self.assertRaisesRegex(ValueError, 'other: the image holds no finite number'):
             read_colour(file)
+
+    def test_pages_are_read_without_a_file(self):
+        path = self.folder / 'pages.tif'
+        for pages in ([texture(60, 40, seed=seed) for seed in (1, 2, 3)], [np.dstack([texture(60, 40, np.uint16, seed)] * 3) for seed in (4, 5)]):
+            write_picture(path, *pages, texture(20, 10))  # and a thumbnail
+            data = path.read_bytes()
+            with mock.patch('builtins.open', side_effect=AssertionError), mock.patch.object(cv2, 'imreadmulti', side_effect=AssertionError):
+                np.testing.assert_array_equal(decode_pages(data), pages)
+                np.testing.assert_array_equal(decode_pages(data, first_alone=True), pages[:1])
+            ok, written = cv2.imreadmulti(str(path), flags=cv2.IMREAD_UNCHANGED)
+            np.testing.assert_array_equal(written[:len(pages)], pages)
+            places, samples = pages_of_tiff(data)
+            self.assertEqual((len(places), samples), (len(pages) + 1, 1 if pages[0].ndim == 2 else 3))
+            with self.assertRaisesRegex(ValueError, 'damaged or cut off'):
+                decode_pages(data[:places[1]] + b'\xff' * 40 + data[places[1] + 40:])
+            np.testing.assert_array_equal(decode_grey(data), decode_grey(data[:places[1]] + b'\xff' * 40 + data[places[1] + 40:]))
+        swapped = struct.pack('>2sHIHHHII', b'MM', 42, 8, 1, SAMPLES, 3, 1, 1 << 16) + bytes(4)
+        self.assertEqual(pages_of_tiff(swapped), ([8], 1))
 
     def test_exif(self):
         # little-endian TIFF: one entry that points to the EXIF directory, and there a focal length of 28 mm
