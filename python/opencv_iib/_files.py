@@ -141,19 +141,25 @@ def replaced(*paths: str) -> Iterator[list[str]]:
 
 @contextmanager
 def only_writer(path: str) -> Iterator[None]:
-    """Locks a folder, or a file, which is made if it is missing.
+    """Locks a folder, or a file, which is made if it is missing, and removed if nothing came of it.
 
     :raises FileExistsError: for a link, which could lead to files of others.
     :raises BlockingIOError: if another process has it locked.
     """
     if os.path.islink(path):
         raise FileExistsError(f'{path} is a link: remove it, or choose another name')
+    made = not os.path.exists(path)
     try:
         lock = _core.FileLock(path)
     except _core.error as e:
         raise BlockingIOError(str(e)) from None
     try:
         yield
+    except BaseException:
+        with suppress(OSError):
+            if made and not os.path.getsize(path):
+                os.unlink(path)
+        raise
     finally:
         del lock
 

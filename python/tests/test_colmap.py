@@ -199,7 +199,7 @@ class Runs(Collection):
         for name in ('.partial', '.partial-wal', '.partial-journal'):
             (self.folder / f'database.db{name}').write_bytes(b'precious' * 1000)
             expect_kept(self.folder / f'database.db{name}')
-        partial.unlink()  # empty, of the refused runs
+        self.assertEqual(self.files(), ['images'], 'nothing is left of refused runs')
         partial.mkdir()
         with self.assertRaisesRegex(FileExistsError, 'not of an unfinished run'):
             self.build(force=True)
