@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "../parallel.hpp"
 #include "opencv2/core.hpp"
 
 namespace cv::iib {
@@ -188,8 +189,14 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
         return fit;
 
     RNG random(0x5eed);
-    std::vector<int> sample(size);
-    std::vector<Model> models;
+    struct Proposal
+    {
+        std::vector<int> sample;
+        std::vector<Model> models;
+        std::vector<double> losses;  // or anything over the limit
+    };
+    // Several threads propose at once; models are taken in the order of their samples, by the limit that is then.
+    std::vector<Proposal> proposals(getNumThreads() > 1 ? 32 : 1);
     std::vector<std::pair<double, Model>> best;  // losses in order, and models
     std::vector<double> squared;
     double leastLoss = none, trials = mostTrials;
@@ -207,36 +214,49 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
         const double wanted = right > 0 ? std::log(missed) / std::log1p(-std::min(right, .999)) : none;
         trials = std::max<double>(fewestTrials, std::min<double>(mostTrials, wanted));
     };
-    for (int trial = 0; trial < trials; trial++)
+    const auto limitOf = [&] { return best.size() < most ? none : best.back().first; };
+    for (int trial = 0; trial < trials;)
     {
-        for (int k = 0; k < size; k++)
-            do
-                sample[k] = random.uniform(0, count);
-            while (std::find(sample.begin(), sample.begin() + k, sample[k]) != sample.begin() + k);
-        problem.propose(sample, models);
-        for (const Model& model : models)
+        proposals.resize(std::min<size_t>(proposals.size(), cvCeil(trials - trial)));
+        for (Proposal& proposal : proposals)
         {
-            const double limit = best.size() < most ? none : best.back().first,
-                         loss = problem.loss(model, scale, limit);
-            if (loss >= limit)
-                continue;
-            if (best.size() == most)
-                best.pop_back();
-            auto place = best.begin();
-            while (place != best.end() && place->first <= loss)
-                ++place;
-            if (best.insert(place, {loss, model}) == best.begin())
-                expect(model);
+            std::vector<int>& sample = proposal.sample;
+            sample.resize(size);
+            for (int k = 0; k < size; k++)
+                do
+                    sample[k] = random.uniform(0, count);
+                while (std::find(sample.begin(), sample.begin() + k, sample[k]) != sample.begin() + k);
         }
+        const double limit = limitOf();
+        inParallel(proposals.size(), [&](size_t i) {
+            Proposal& proposal = proposals[i];
+            problem.propose(proposal.sample, proposal.models);
+            proposal.losses.clear();
+            for (const Model& model : proposal.models)
+                proposal.losses.push_back(problem.loss(model, scale, limit));
+        });
+        for (size_t i = 0; i < proposals.size() && trial < trials; i++, trial++)
+            for (size_t k = 0; k < proposals[i].models.size(); k++)
+            {
+                const std::pair<double, Model> one(proposals[i].losses[k], proposals[i].models[k]);
+                if (one.first >= limitOf())
+                    continue;
+                if (best.size() == most)
+                    best.pop_back();
+                auto place = best.begin();
+                while (place != best.end() && place->first <= one.first)
+                    ++place;
+                if (best.insert(place, one) == best.begin())
+                    expect(one.second);
+            }
     }
 
     fit.wantsMore = trials == mostTrials;
-    std::vector<Candidate<Problem>> candidates;
-    for (std::pair<double, Model>& one : best)
-    {
-        polish(problem, 2 * scale, roughly, one.second);
-        candidates.push_back(withAlternatives(problem, scale, one.second).front());
-    }
+    std::vector<Candidate<Problem>> candidates(best.size());
+    inParallel(best.size(), [&](size_t i) {
+        polish(problem, 2 * scale, roughly, best[i].second);
+        candidates[i] = withAlternatives(problem, scale, best[i].second).front();
+    });
     take(problem, candidates, fit);
     return fit;
 }
@@ -297,11 +317,12 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
     std::vector<typename Problem::Model> rivals = problem.rivals(fit.model, fit.scale);
     if (!fit.otherSquared.empty())
         rivals.push_back(fit.other);
-    for (typename Problem::Model& rival : rivals)
-    {
-        polish(problem, fit.scale, roughly, rival);
-        candidates.push_back(withAlternatives(problem, fit.scale, rival).front());
-    }
+    const size_t own = candidates.size();
+    candidates.resize(own + rivals.size());
+    inParallel(rivals.size(), [&](size_t i) {
+        polish(problem, fit.scale, roughly, rivals[i]);
+        candidates[own + i] = withAlternatives(problem, fit.scale, rivals[i]).front();
+    });
     take(problem, candidates, fit);
     return fit;
 }

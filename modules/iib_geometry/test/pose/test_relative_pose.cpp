@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <atomic>
+
 #include "../derivatives.hpp"
 #include "pose/epipolar_problem.hpp"
 #include "pose/five_points.hpp"
@@ -132,7 +134,7 @@ struct HopelessProblem
     typedef double Model;
     typedef Vec<double, 1> Step;
 
-    mutable int trials = 0;
+    mutable std::atomic<int> trials{0};
 
     int size() const { return 10000; }
     int sampleSize() const { return 5; }
@@ -161,6 +163,55 @@ TEST(RelativePose, hopeless_matches_are_tried_as_often_as_any)
     const HopelessProblem problem;
     robustFit(problem, 1);
     EXPECT_EQ(10000, problem.trials);
+}
+
+//! Models without sense, each of which is its sample's seed: the best one of few depends on which ones those are.
+struct SenselessProblem
+{
+    typedef uint64 Model;
+    typedef Vec<double, 1> Step;
+
+    uint64 seed;
+
+    int size() const { return 40; }
+    double mostScale() const { return 1; }
+    int sampleSize() const { return 3; }
+    int parameters() const { return 1; }
+    void propose(const std::vector<int>& sample, std::vector<Model>& models) const
+    {
+        models = {RNG(seed + (sample[0] * 40 + sample[1]) * 40 + sample[2]).next()};
+    }
+    double loss(Model model, double, double) const { return RNG(model).uniform(0., 1.); }
+    void squaredErrors(Model model, std::vector<double>& errors) const
+    {
+        RNG random(model + 1);
+        errors.resize(size());
+        for (double& error : errors)
+            error = random.uniform(0., 18.);
+    }
+    std::vector<Model> alternatives(Model) const { return {}; }
+    std::vector<Model> rivals(Model, double) const { return {}; }
+    bool areApart(Model, Model) const { return true; }
+    void linearize(Model, double, std::vector<Row<Step>>& rows) const { rows.clear(); }
+    Model moved(Model model, const Step&) const { return model; }
+};
+
+TEST(RelativePose, is_looked_for_alike_by_every_number_of_threads)
+{
+    const int before = getNumThreads();
+    for (uint64 seed = 0; seed < 200; seed++)
+    {
+        setNumThreads(1);
+        const Fit<SenselessProblem> expected = robustFit(SenselessProblem{seed << 32}, 1);
+        for (int threads : {2, 3, 8})
+        {
+            setNumThreads(threads);
+            const Fit<SenselessProblem> found = robustFit(SenselessProblem{seed << 32}, 1);
+            EXPECT_EQ(expected.model, found.model) << seed << ", " << threads;
+            EXPECT_EQ(expected.other, found.other) << seed << ", " << threads;
+        }
+    }
+    setNumThreads(before);
 }
 
 TEST(RelativePose, one_match_far_away_changes_little)
