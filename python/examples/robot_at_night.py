@@ -33,7 +33,7 @@ unit = np.linalg.norm(to_metres[:3], axis=0).mean()
 print(build(folder / str(number), images, folder / 'map'))
 
 # %% By night: each image is first looked for where the robot was last.
-localizer, last, errors = Localizer(folder / 'map'), None, []
+localizer, last, errors, places = Localizer(folder / 'map'), None, [], []
 for k in range(20):
     at = (.09 * k - .9, .05)
     location = localizer.localize(scene.view('night', at), camera, last)
@@ -41,10 +41,21 @@ for k in range(20):
     if last is None or location.covariance is None:
         print(f'{k}: {location.reason}')
         continue
-    errors.append(np.linalg.norm([*(-last[:3, :3].T @ last[:3, 3]), 1] @ to_metres - at))
+    places.append([*(-last[:3, :3].T @ last[:3, 3]), 1] @ to_metres)
+    errors.append(np.linalg.norm(places[-1] - at))
     sigma = unit * np.sqrt(np.trace(location.covariance[:3, :3]))
     if k % 5 == 0:
         print(f'{k}: {location.inliers} matches agree, off by {100 * errors[-1]:.1f} cm, told +-{100 * sigma:.1f} cm')
 
 # %% How well.
 print(f'{len(errors)} of 20 places are found, half of them within {100 * np.median(errors):.1f} cm')
+
+# %% What the robot saw last, the map's points in it, and its way: circles of five centimetres about its places, and a line that is the truth.
+picture = np.vstack([scene.view('night', at), np.full((120, width, 3), 40, np.uint8)])
+for x, y in location.pixels:
+    cv2.circle(picture, (round(x), round(y)), 3, (80, 220, 80), 1, cv2.LINE_AA)
+per_metre = .9 * width / 1.8
+for x, y in places:
+    cv2.circle(picture, (round(width / 2 + x * per_metre), round(height + 60 + (y - .05) * per_metre)), round(.05 * per_metre), (80, 220, 80), 1, cv2.LINE_AA)
+cv2.line(picture, (round(.05 * width), height + 60), (round(width / 2 + at[0] * per_metre), height + 60), (255, 255, 255), 1)
+cv2.imwrite('robot_at_night.jpg', picture)

@@ -4,6 +4,7 @@ import tempfile
 from pathlib import Path
 
 import cv2
+import numpy as np
 import pycolmap
 
 import scene
@@ -41,3 +42,16 @@ model = max(models.values(), key=lambda m: m.num_reg_images())
 flights = {number: image.name.split('/')[0] for number, image in model.images.items()}
 seen = [{flights[element.image_id] for element in point.track.elements} for point in model.points3D.values()]
 print(f'{model.num_reg_images()} images in one model; of {len(seen)} points {sum(len(each) > 1 for each in seen)} are seen by both flights')
+
+# %% The model from above: white points are seen by both flights, and the cameras of the morning are yellow, of the evening blue.
+picture = np.full((480, 640, 3), 40, np.uint8)
+centres = np.array([image.projection_center() for image in model.images.values()])
+points = np.array([point.xyz for point in model.points3D.values()])
+low = np.minimum(np.percentile(points, 1, axis=0), centres.min(axis=0))
+unit = 400 / (np.maximum(np.percentile(points, 99, axis=0), centres.max(axis=0)) - low).max()
+for places, colours, size in (
+        (points, [(255, 255, 255) if len(each) > 1 else (120, 120, 120) for each in seen], 1),
+        (centres, [(0, 200, 255) if flight == 'morning' else (255, 140, 60) for flight in flights.values()], 6)):
+    for (x, _, z), colour in zip((places - low) * unit, colours):
+        cv2.circle(picture, (int(40 + x), int(440 - z)), size, colour, -1, cv2.LINE_AA)
+cv2.imwrite('two_flights.png', picture)

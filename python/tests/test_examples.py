@@ -5,6 +5,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from pathlib import Path
 
 import numpy as np
 import opencv_iib
@@ -15,7 +16,7 @@ EXAMPLES = REPOSITORY / 'python/examples'
 
 class Examples(unittest.TestCase):
 
-    def run_example(self, name, pattern, *arguments, needs=('cv2',)):
+    def run_example(self, name, pattern, *arguments, needs=('cv2',), picture=None):
         missing = [module for module in needs if importlib.util.find_spec(module) is None]
         if missing or not (REPOSITORY / 'tools/synthetic').is_dir():
             self.skipTest('%s is missing' % (', '.join(missing) or 'the clone'))
@@ -23,6 +24,10 @@ class Examples(unittest.TestCase):
         self.assertGreaterEqual(text.count('\n# %% '), 4)
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run([sys.executable, '-B', EXAMPLES / name, *arguments], cwd=folder, capture_output=True, text=True)
+            if picture is not None:
+                import cv2
+                drawn = cv2.imread(str(Path(folder, picture)))
+                self.assertTrue(drawn is not None and drawn.std() > 10, 'no picture')
         self.assertEqual(done.returncode, 0, done.stderr)
         found = re.search(pattern, done.stdout)
         self.assertTrue(found, done.stdout)
@@ -50,20 +55,21 @@ class Examples(unittest.TestCase):
         self.assertEqual(images, 9)
 
     def test_webcam_year(self):
-        aligned, of, sharper = self.run_example('webcam_year.py', r'(\d+) of (\d+) pictures are aligned\n(?:.*\n)*.* is ([\d.]+) times as sharp')
+        aligned, of, sharper = self.run_example('webcam_year.py', r'(\d+) of (\d+) pictures are aligned\n(?:.*\n)*.* is ([\d.]+) times as sharp',
+                                               picture='webcam_year.jpg')
         self.assertEqual((aligned, of), (23, 23))
         self.assertGreater(sharper, 1.2)
 
     def test_two_flights(self):
         morning, both, registered, points, shared = self.run_example(
             'two_flights.py', r'morning: (\d+) images(?:.*\n)*and evening: (\d+) images(?:.*\n)*(\d+) images in one model; of (\d+) points (\d+)',
-            needs=('cv2', 'pycolmap'))
+            needs=('cv2', 'pycolmap'), picture='two_flights.png')
         self.assertEqual((morning, both, registered), (7, 14, 14))
         self.assertGreater(shared, .2 * points)
 
     def test_robot_at_night(self):
         found, centimetres = self.run_example('robot_at_night.py', r'(\d+) of 20 places are found, half of them within ([\d.]+) cm',
-                                              needs=('cv2', 'pycolmap'))
+                                              needs=('cv2', 'pycolmap'), picture='robot_at_night.jpg')
         self.assertGreaterEqual(found, 19)
         self.assertLess(centimetres, 5)
 
