@@ -188,12 +188,11 @@ def _scaled(image: np.ndarray) -> np.ndarray:
     values = colours[np.isfinite(colours)]
     if not values.size:
         raise ValueError('the image holds no finite number')
-    low, high = np.percentile(values[::1 + values.size // 1000000], (.01, 99.99))
-    low, high = float(low), float(high)  # floats of 32 bits have no number for what lies between their largest ones
-    if high > low:
-        values = values[(values >= 2 * low - high) & (values <= 2 * high - low)]
-    low, high = float(values.min()), float(values.max())
-    with np.errstate(invalid='ignore', over='ignore'):
+    with np.errstate(invalid='ignore', over='ignore'):  # floats of 32 bits have no number for what lies between their largest ones
+        low, high = map(float, np.percentile(values[::1 + values.size // 1000000], (.01, 99.99)))
+        if high > low:
+            values = values[(values >= 2 * low - high) & (values <= 2 * high - low)]
+        low, high = float(values.min()), float(values.max())
         return np.nan_to_num(np.rint((image - low) * (255 / ((high - low) or 1))).clip(0, 255)).astype(np.uint8)
 
 
