@@ -131,9 +131,9 @@ class Texts(InFolder):
             self.expect(opencv_iib.error, 'maxDistance is .*: it must be more than 0', lambda: HierarchicalMatcher().radiusMatch(codes, codes, distance))
         for field, wrong in (('points', 2.5), ('max_size', 'x')):
             self.expect(TypeError, field + ': an integer', FeatureOptions(**{field: wrong}).check)
-        for field, wrong in (('focal', 'x'), ('neighbours', 1.5), ('ratio', None), ('camera_of', 'x=y')) if cv2 is not None else ():
+        for field, wrong in (('focal', 'x'), ('neighbours', 1.5), ('ratio', None), ('camera_of', 'x=y')):
             self.expect(TypeError, f'{field}: .* is needed, not {wrong!r}', Options(**{field: wrong}).check)
-        for wrong in ({'verify': 3}, {'camera_model': None}, {'camera_of': [3]}) if cv2 is not None else ():
+        for wrong in ({'verify': 3}, {'camera_model': None}, {'camera_of': [3]}):
             self.expect(ValueError, 'must be|there are', Options(**wrong).check)
         (self.folder / 'a.png').touch()
         self.expect(TypeError, 'images: a sequence of paths', lambda: align(self.folder / 'a.png', 'x', self.folder / 'out'))

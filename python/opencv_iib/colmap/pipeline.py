@@ -62,7 +62,6 @@ class Options:
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
         self.features.check()
-        import_cv2()
         if not 0 <= number(self.focal, 'focal') < float('inf'):
             raise InvalidOption(f'focal is {self.focal}: it must be a number of pixels, or 0')
         if self.camera_model not in CAMERA_MODELS:
@@ -85,6 +84,7 @@ class Options:
             raise InvalidOption(f'neighbours is {self.neighbours}: it must be at least 1')
         if not 0 < number(self.ratio, 'ratio') <= 1:
             raise InvalidOption(f'ratio is {self.ratio}: it must be in (0, 1]')
+        import_cv2()
 
 
 @functools.lru_cache(maxsize=1)
@@ -276,8 +276,8 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     :raises FileExistsError: if what is at ``database.partial`` is of no unfinished run.
     :raises BlockingIOError: if another process is writing the database.
     """
-    options.check()
     crew = Threads(thread_count(workers)) if client is None else Cluster(client)
+    options.check()
     images, database = os.fspath(images), output_file(os.fspath(database))
     check_is_folder(images)
     names = find_images(images)
