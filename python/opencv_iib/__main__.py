@@ -71,7 +71,7 @@ def _choice(parser: argparse.ArgumentParser, option: str, names: Iterable[str], 
 
 def _features(parser: argparse.ArgumentParser, points: int) -> None:
     _choice(parser, '--detector', DETECTORS, default=FeatureOptions.detector, help='HessianDetector, or a detector of cv2 (%(default)s)')
-    parser.add_argument('--points', type=int, default=points, help='at most so many an image (%(default)s)')
+    parser.add_argument('--points', type=int, default=points, metavar='N', help='at most so many an image (%(default)s)')
     _choice(parser, '--preset', sorted(preset_names()), default=FeatureOptions.preset, help='descriptor (%(default)s)')
     parser.add_argument('--orientation', action='store_true', help='turn what is described by its direction')
     _seen(parser)
@@ -80,8 +80,8 @@ def _features(parser: argparse.ArgumentParser, points: int) -> None:
 def _seen(parser: argparse.ArgumentParser) -> None:
     """What of images is described, and how large."""
     parser.add_argument('--max-size', type=int, default=0, metavar='PIXELS',
-                        help='reduce larger images to this longer side; points stay in their own pixels')
-    parser.add_argument('--mask', metavar='FILE_OR_FOLDER', help='describe nothing where it is 0; in a folder, NAME.jpg.png is the mask of NAME.jpg')
+                        help='reduce larger images to it; points stay in own pixels')
+    parser.add_argument('--mask', metavar='PATH', help='describe nothing where it is 0; in a folder, NAME.jpg.png is the mask of NAME.jpg')
     parser.add_argument('--no-exif', dest='exif', action='store_false', help='for files whose EXIF data tell a wrong orientation')
 
 
@@ -121,7 +121,7 @@ def _parser() -> _Parser:
     command.add_argument('pair', nargs='*', metavar='image', help='two of them')
     command.add_argument('--pairs', metavar='LIST', help='instead, a file with two names a line: each pair is kept when it is done')
     command.add_argument('--images', metavar='FOLDER', help='that the names are of')
-    command.add_argument('--workers', type=int, help='threads, of a list (one a core)')
+    command.add_argument('--workers', type=int, metavar='N', help='threads, of a list (one a core)')
     command.add_argument('--out', default='matches.csv', help='file to write, a line a match; also .json and .npz, and - for standard output '
                          '(%(default)s); of a list a folder, or a file in .h5')
     command.add_argument('--picture', help='picture to write')
@@ -139,25 +139,25 @@ def _parser() -> _Parser:
     _choice(command, '--format', FORMATS, help="of what is written (that of each image's file)")
     command.add_argument('--crop', action='store_true', help='write what all show, instead of what the reference shows')
     _choice(command, '--interpolation', INTERPOLATIONS, default='LINEAR', help='(%(default)s)')
-    command.add_argument('--workers', type=int, help='threads (one a core)')
+    command.add_argument('--workers', type=int, metavar='N', help='threads (one a core)')
     _seen(command)
 
     command = add('colmap', _colmap, 'describe and match a folder, for colmap mapper',
                   'IMAGES DATABASE', 'photos/ database.db --pairs retrieval --camera-of drone=OPENCV,4000,3000,3100,3100,2000,1500,0,0,0,0')
     command.add_argument('images', help='folder of images')
-    command.add_argument('database', help='file to write, or to add new images to; an interrupted run goes on from NAME.partial')
+    command.add_argument('database', help='file to write or to add to; goes on from NAME.partial')
     _features(command, FeatureOptions.points)
     _choice(command, '--camera-model', CAMERA_MODELS, default='SIMPLE_RADIAL', help='(%(default)s)')
     command.add_argument('--focal', type=float, default=0, help='focal length in pixels, instead of EXIF')
-    command.add_argument('--camera', metavar=CAMERA, help="COLMAP's name and parameters of the camera of all images")
+    command.add_argument('--camera', metavar=CAMERA, help="COLMAP's name and parameters of all images' camera")
     command.add_argument('--camera-of', action='append', default=[], metavar=f'FOLDER={CAMERA}', help='of the images below a folder; also several times')
     command.add_argument('--share-cameras', action='store_true', help='one camera for images of one size and focal')
     command.add_argument('--pairs', default='exhaustive',
                          help=f'{", ".join(PAIRS)}, or a file with two names a line (%(default)s)')
-    command.add_argument('--neighbours', type=int, default=20, help='of sequential, retrieval and gps (%(default)s)')
+    command.add_argument('--neighbours', type=int, default=20, metavar='N', help='of sequential, retrieval and gps (%(default)s)')
     command.add_argument('--ratio', type=float, default=.9, help='ratio test beside the cross-check (%(default)s; 1: none)')
     _choice(command, '--verify', VERIFIERS, str.lower, default='auto', help='two-view geometry (%(default)s)')
-    command.add_argument('--workers', type=int, help='threads (one a core)')
+    command.add_argument('--workers', type=int, metavar='N', help='threads (one a core)')
     command.add_argument('--scheduler', metavar='ADDRESS', help="have the workers of Dask's scheduler there do it")
     command.add_argument('--force', action='store_true', help='replace a database that is there')
 
@@ -181,13 +181,13 @@ def _parser() -> _Parser:
     for each in (mapping, localizing, updating):
         each.add_argument('--images', required=True, help='folder of images, also in folders below it' + (
             '; or -: paths from standard input, a line each, answered at once by a line on standard output' if each is localizing else ''))
-        each.add_argument('--workers', type=int, help='threads (one a core)')
+        each.add_argument('--workers', type=int, metavar='N', help='threads (one a core)')
         _seen(each)
     for each in (localizing, updating):
         each.add_argument('--camera', metavar=CAMERA, type=_camera,
                           help="COLMAP's name and parameters of the camera of all images, instead of the map's or EXIF's")
     mapping.add_argument('--out', required=True, help='folder to write')
-    mapping.add_argument('--points', type=int, default=2000, help='at most so many an image (%(default)s)')
+    mapping.add_argument('--points', type=int, default=2000, metavar='N', help='at most so many an image (%(default)s)')
     mapping.add_argument('--orb-and-akaze', action='store_true', help="the paper's points and descriptor in place of the recommended ones")
     mapping.add_argument('--force', action='store_true', help='replace a map that is there')
     localizing.add_argument('--out', help='folder to write, older results there are replaced; or X.csv or - for a table alone')

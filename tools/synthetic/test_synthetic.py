@@ -121,7 +121,7 @@ class Scenes(unittest.TestCase):
     def test_views_lie_near_the_walk_in_folders_that_the_evaluation_reads(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder)
-            tasks = list(views.plan(out, ["room"], [1, 2]))
+            tasks = list(views.plan(out, ["room"], [1, 2], (64, 48)))
             self.assertEqual(len(tasks), 2 * (views.MAP_VIEWS + views.VIEWS * len(views.LIGHTS)))
             walked = scenes.walk(scenes.SCENES["room"].path, 100)
             for task in tasks:

@@ -25,7 +25,7 @@ def beside(scene, light, seed):
     return poses
 
 
-def plan(out, scenes, seeds):
+def plan(out, scenes, seeds, size):
     for seed in seeds:
         for scene in scenes:
             views = {"map": (MAP_LIGHT, walk(SCENES[scene].path, MAP_VIEWS))}
@@ -33,7 +33,7 @@ def plan(out, scenes, seeds):
             for name, (light, poses) in views.items():
                 folder = out / f"{scene}_{seed}" / name
                 names = [f"{k:04d}" for k in range(len(poses))]
-                write_text(folder / "cameras.txt", cameras(scene, SIZE))
+                write_text(folder / "cameras.txt", cameras(scene, size))
                 write_text(folder / "poses.txt", tum(names, poses))
                 for k, pose in enumerate(poses):
                     yield Task(folder / "images" / f"{names[k]}.png", scene, IMAGE, light, pose, k, [], seed)
@@ -46,9 +46,11 @@ def main():
                         help=f"some of: {', '.join(SCENES)} (all)")
     parser.add_argument("--seed", nargs="+", type=int, default=[1, 2, 3],
                         help="of the instances; 0 is the scene of the other programs (1 2 3)")
+    parser.add_argument("--size", type=int, nargs=2, default=SIZE, metavar=("WIDTH", "HEIGHT"))
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
     options = parser.parse_args()
-    render_all(list(plan(options.out, options.scenes, options.seed)), SIZE, options.jobs, run_quickly)
+    size = tuple(options.size)
+    render_all(list(plan(options.out, options.scenes, options.seed, size)), size, options.jobs, run_quickly)
 
 
 if __name__ == "__main__":
