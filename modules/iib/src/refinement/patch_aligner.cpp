@@ -25,7 +25,7 @@ const double HALVED = 1 << (WEIGHT_BITS + 1);     //!< halved weights' unit over
 const double LIGHT = .06, SHARED_BY_NOISE = .28;  //!< of errors by other light: see covariance()
 const double NOISE_BY_CHANCE = 1.15;              //!< over its mean, so that it is not taken for what is seen
 const double LEAST_SIGNAL = .1;                   //!< in what a patch seems to tell
-const double DAMPING_OF_PLACE = 1e-5, DAMPING_OF_MAP = 5e-3;
+const double DAMPING_OF_PLACE = 1e-5, DAMPING_OF_WARP = 5e-3;
 
 PatchWeights makeWeights()
 {
@@ -295,7 +295,7 @@ bool PatchAligner::solve()
             inverse(i, j) = inverse(j, i) = (square - mean - explained) * variance;
         }
     for (int i = 0; i < PARAMETERS; i++)
-        inverse(i, i) += i < 2 ? DAMPING_OF_PLACE : DAMPING_OF_MAP;
+        inverse(i, i) += i < 2 ? DAMPING_OF_PLACE : DAMPING_OF_WARP;
     return usable = invert(inverse);
 }
 
