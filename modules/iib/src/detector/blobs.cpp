@@ -56,15 +56,15 @@ public:
     std::vector<std::vector<Extremum>> extrema() const
     {
         std::vector<Part> parts;
-        for (const Octave& octave : octaves)
-        {
-            const int first = octave.borders[octave.begin], rows = octave.size.height - 2 * first;
-            if (rows <= 0 || octave.size.width <= 2 * first)
-                continue;
-            const int n = std::max(std::min(getNumThreads(), rows / LEAST_ROWS), 1);
-            for (int i = 0; i < n; i++)
-                parts.push_back({&octave, first + rows * i / n, first + rows * (i + 1) / n - 1});
-        }
+        const int threads = getNumThreads();
+        for (int i = 0; i < threads; i++)  // so that half of the parts are half of the work
+            for (const Octave& octave : octaves)
+            {
+                const int first = octave.borders[octave.begin], rows = octave.size.height - 2 * first;
+                const int n = std::max(std::min(threads, rows / LEAST_ROWS), 1);
+                if (i < n && rows > 0 && octave.size.width > 2 * first)
+                    parts.push_back({&octave, first + rows * i / n, first + rows * (i + 1) / n - 1});
+            }
         std::vector<std::vector<Extremum>> found(parts.size());
         parallel_for_(Range(0, (int)parts.size()), [&](const Range& range) {
             for (int i = range.start; i < range.end; i++)
