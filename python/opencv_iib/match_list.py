@@ -28,7 +28,7 @@ from opencv_iib.measure import Measured, View, measure
 HDF5 = ('.h5', '.hdf5')
 TABLE = 'pairs.csv'
 NUMBERS = [*(f'r{row}{column}' for row in '123' for column in '123'), 't1', 't2', 't3']
-COLUMNS = ['image_a', 'image_b', 'found', 'reason', 'matches', 'agree', *NUMBERS, 'files', 'settings']
+COLUMNS = ['image_a', 'image_b', 'found', 'reason', 'matches', 'agree', 'rotation', *NUMBERS, 'files', 'settings']
 IMAGES_HELD = 32  # whose pixels are kept, of those that were described
 
 
@@ -72,7 +72,7 @@ class _Folder(contextlib.AbstractContextManager[Any]):
         pose = measured.pose
         numbers = [f'{value:.10g}' for value in (*pose.R.ravel(), *pose.t.ravel())] if pose is not None and pose.found else [''] * len(NUMBERS)
         csv.writer(self._file).writerow([a, b, int(measured.found), pose.reason if pose is not None else '', len(measured.bits),
-                                         int(measured.agree.sum()), *numbers, *mark])
+                                         int(measured.agree.sum()), f'{measured.rotation:.10g}', *numbers, *mark])
         self._file.flush()
         measured.save(self._name(a, b))  # last: without it the pair is matched again
 
@@ -121,6 +121,7 @@ class _Hdf5(contextlib.AbstractContextManager[Any]):
         if pose is not None and pose.found:
             group['R'], group['t'], group['covariance'] = pose.R, pose.t.ravel(), pose.covariance
         group.attrs['found'], group.attrs['reason'] = measured.found, pose.reason if pose is not None else ''
+        group.attrs['rotation'] = measured.rotation
         group.attrs['mark'] = mark  # last: without it the pair is matched again
         self._file.flush()
 

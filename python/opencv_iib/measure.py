@@ -57,8 +57,8 @@ class Measured(NamedTuple):
         """Writes matches and pose to a file that is replaced when the new one is whole, by its suffix: .json, .npz, or else CSV.
 
         A row a match: both points in pixels (the centre of the first pixel is 0), the covariance of the second, the patches'
-        correlation (-1: not refined), bits that differ, and with cameras whether it agrees with the pose. JSON and NPZ have the pose
-        too; in JSON it is null without cameras, as is a number that is not finite, and ``matches`` are objects. '-' is standard output.
+        correlation (-1: not refined), bits that differ, and with cameras whether it agrees with the pose. JSON and NPZ have the rotation and
+        the pose too; in JSON it is null without cameras, as is a number that is not finite, and ``matches`` are objects. '-' is standard output.
         """
         path, pose = os.fspath(file), None
         table = np.column_stack([self.matches.points1, self.matches.points2, self.matches.covariances, self.matches.similarities, self.bits])
@@ -69,11 +69,11 @@ class Measured(NamedTuple):
         if path.lower().endswith('.npz'):
             arrays = io.BytesIO()
             known = {name: value for name, value in (pose or {}).items() if value is not None}
-            np.savez_compressed(arrays, **self.matches._asdict(), bits=self.bits, **known)
+            np.savez_compressed(arrays, **self.matches._asdict(), bits=self.bits, rotation=self.rotation, **known)
             content = arrays.getvalue()
         elif path.lower().endswith('.json'):
             matches = [dict(zip(COLUMNS, (json.loads(text) if np.isfinite(float(text)) else None for text in row))) for row in rows]
-            content = json.dumps({'matches': matches, 'pose': pose}, default=_finite, allow_nan=False).encode()
+            content = json.dumps({'matches': matches, 'pose': pose, 'rotation': float(self.rotation)}, default=_finite, allow_nan=False).encode()
         else:
             header = [*COLUMNS, 'agrees'] if pose else COLUMNS
             rows = [[*row, f'{agrees:d}'] for row, agrees in zip(rows, self.agree.tolist())] if pose else rows

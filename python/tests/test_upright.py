@@ -1,4 +1,6 @@
 """Images that their files store turned, as telephones write them."""
+import csv
+import json
 import struct
 import unittest
 import zlib
@@ -15,7 +17,9 @@ from opencv_iib._exif import exif_orientation
 from opencv_iib._images import read_with_orientation
 from opencv_iib.measure import match_images
 from opencv_iib.localization import Camera
-from support import cv2, run_command, texture
+from support import cv2, optional, run_command, texture
+
+h5py = optional('h5py')
 
 STORED = {1: 1, 2: 2, 3: 3, 4: 4, 5: 5, 6: 8, 7: 7, 8: 6}  # what turns an upright image to one that is upright by this orientation
 TURNED = [6, 3, 8, 2, 4, 5, 7]
@@ -133,6 +137,19 @@ class Commands(Collection):
                               options=FeatureOptions(points=300))
         self.assertAlmostEqual(turned.rotation % 360, 270, delta=10)
         self.assertGreater(turned.agree.sum(), 100)
+        turned.save(self.folder / 'm.json')
+        turned.save(self.folder / 'm.npz')
+        (self.folder / 'pairs.txt').write_text('a.png b.png\n')
+        outs = [self.folder / 'out', *([self.folder / 'x.h5'] if h5py else [])]
+        for out in outs:
+            self.assertEqual(run_command('match', '--pairs', self.folder / 'pairs.txt', '--images', self.folder, '--out', out, '--points', 300)[0], 0)
+        told = [json.loads((self.folder / 'm.json').read_text())['rotation'], float(np.load(self.folder / 'm.npz')['rotation'])]
+        with open(outs[0] / 'pairs.csv', newline='') as file:
+            told.append(float(next(csv.DictReader(file))['rotation']))
+        if h5py:
+            with h5py.File(outs[1]) as file:
+                told.append(float(file['a.png/b.png'].attrs['rotation']))
+        np.testing.assert_allclose(told, turned.rotation, rtol=1e-9)
         noise = np.random.default_rng(1).integers(0, 256, self.a.shape, np.uint8)
         cv2.imwrite(str(b), noise)
         self.assertEqual(match_images(a, b).rotation, 0)
