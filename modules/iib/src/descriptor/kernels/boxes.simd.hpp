@@ -228,6 +228,16 @@ inline v_means boxSums(const int64* above, const int64* below, size_t left, size
 
 inline void storeMeans(short* out, const v_means& m) { v_pack_store(out, nearestInt(m)); }
 inline void storeMeans(int* out, const v_means& m) { v_store(out, nearestInt(m)); }
+// Two vectors at a time: half the packing, and what reads them finds them written at once.
+inline void storeMeans(short* out, const v_means& a, const v_means& b)
+{
+    v_store(out, v_pack(nearestInt(a), nearestInt(b)));
+}
+inline void storeMeans(int* out, const v_means& a, const v_means& b)
+{
+    storeMeans(out, a);
+    storeMeans(out + SAMPLE_LANES, b);
+}
 
 template <typename Sum, typename Mean>
 void boxMeans(const RingRows<Sum>& integral, const BoxGridShape& grid, const BoxEdges& edges, Mean* means)
@@ -241,10 +251,17 @@ void boxMeans(const RingRows<Sum>& integral, const BoxGridShape& grid, const Box
         const Sum* const below = integral.data + (size_t)edges.y[1][first + row] * integral.step;
         const v_means weight = v_setall_means(edges.yWeights[first + row]);
         Mean* out = means + row * grid.stride() * BOX_LANES;
-        for (int i = 0; i < n; i++, out += BOX_LANES)
-            for (int lane = 0; lane < BOX_LANES; lane += SAMPLE_LANES)
-                storeMeans(out + lane, boxSums(above + lane, below + lane, left[i], right[i]) *
-                                               v_setall_means(weights[i]) * weight);
+        const auto meansOf = [&](int i, int lane) {
+            return boxSums(above + lane, below + lane, left[i], right[i]) * v_setall_means(weights[i]) *
+                   weight;
+        };
+        for (int i = 0; i < n; i += 2 / LANE_VECTORS, out += 2 * SAMPLE_LANES)
+            if (LANE_VECTORS == 2)
+                storeMeans(out, meansOf(i, 0), meansOf(i, SAMPLE_LANES));
+            else if (i + 1 < n)
+                storeMeans(out, meansOf(i, 0), meansOf(i + 1, 0));
+            else
+                storeMeans(out, meansOf(i, 0));
     }
 }
 
@@ -280,6 +297,21 @@ inline void storeGreater(const v_int16& a, const v_int16& b, uchar* out)
     storeBytes((unsigned)greaterMask(a, b), VTraits<v_int16>::max_nlanes / 8, out);
 }
 
+//! The same of two pairs of vectors, whose lanes are packed together.
+inline void storeGreater(const v_int16& a, const v_int16& b, uchar* out, const v_int16& nextA,
+        const v_int16& nextB, uchar* nextOut)
+{
+#if CV_AVX512_SKX  // which compares into masks
+    storeGreater(a, b, out);
+    storeGreater(nextA, nextB, nextOut);
+#else
+    constexpr int LANES = VTraits<v_int16>::max_nlanes;
+    const unsigned both = laneBits(v_pack(v_int16(a > b), v_int16(nextA > nextB)));
+    storeBytes(both, LANES / 8, out);
+    storeBytes(both >> LANES, LANES / 8, nextOut);
+#endif
+}
+
 //! Lanes whose own bit compares them with the next one, |gx| > |gy| and gx > gy; the others are compared with 0.
 const short NEXT_IS_PARTNER[BOXES_TOGETHER * BOX_LANES] = {-1, 0, -1, 0, 0, 0, 0, 0, -1, 0, -1, 0, 0, 0, 0, 0,
         -1, 0, -1, 0, 0, 0, 0, 0, -1, 0, -1, 0, 0, 0, 0, 0};
@@ -300,18 +332,22 @@ void compareBoxes(const short* means, const BoxGridShape& grid, uchar* out)
             const v_int16 nextSum = v_add_wrap(vx_load(m), vx_load(m + below));
             const v_int16 nextDifference = v_sub_wrap(vx_load(m), vx_load(m + below));
             const v_int16 right = eightBehind(difference, nextDifference);
-            storeGreater(sum, eightBehind(sum, nextSum), out + col);
-            storeGreater(difference, v_sub_wrap(vx_setzero_s16(), right), out + bytes + col);
+            storeGreater(sum, eightBehind(sum, nextSum), out + col, difference,
+                    v_sub_wrap(vx_setzero_s16(), right), out + bytes + col);
             storeGreater(difference, right, out + 2 * bytes + col);
             sum = nextSum;
             difference = nextDifference;
         }
     }
     const v_int16 partners = vx_load(NEXT_IS_PARTNER);
-    for (int i = 0; i < grid.n * grid.stride(); i += LANES / BOX_LANES)
+    const auto partnersOf = [&](const v_int16& m) {
+        return v_reinterpret_as_s16(v_reinterpret_as_u64(m) >> 16) & partners;
+    };
+    constexpr int BOXES = LANES / BOX_LANES;
+    for (int i = 0; i < grid.n * grid.stride(); i += 2 * BOXES)  // may be more by one vector
     {
-        const v_int16 m = vx_load(means + i * BOX_LANES);
-        storeGreater(m, v_reinterpret_as_s16(v_reinterpret_as_u64(m) >> 16) & partners, out + i);
+        const v_int16 m = vx_load(means + i * BOX_LANES), next = vx_load(means + (i + BOXES) * BOX_LANES);
+        storeGreater(m, partnersOf(m), out + i, next, partnersOf(next), out + i + BOXES);
     }
 }
 
