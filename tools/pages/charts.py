@@ -90,36 +90,28 @@ def scores(bars):
 
 
 def cost():
-    """Poses in other light over processor time: of what was measured here, and of learned features on pairs of their own."""
-    figure, (axis, other) = plt.subplots(1, 2, figsize=(WIDTH, 4), layout='constrained', sharey=True)
-    found, kinds = tables.estimates(), {'none': 'matches as they are', 'full': 'refined by this project'}
-
-    def point(where, time, fill, name, score, ends=None):
-        colour = RED if name.startswith('recommended chain') else GREY
-        where.errorbar([time], [score], ends, marker='o', fillstyle=fill, color=colour, linewidth=0, **ENDS)
-        if fill == 'full':
-            left, above = time > 300, name.endswith('2000') - name.endswith('1000') * (2.6 if time < 20 else 1.7 if time > 1000 else 1)
-            where.annotate(name, (time, score), (-7 if left else 7, 9 * above), textcoords='offset points', ha='right' if left else 'left', va='center',
-                           fontsize='small')
-
-    for method, name in tables.METHODS.items():
-        times = [time for test, which in (('IIB_Chain_vga', name), ('IIB_Chain_others', name)) for time in timings.ms(test, 'street_noon', which, 1000).dropna()]
-        for fill, way in zip(kinds, tables.WAYS[1:]) if times else ():
-            score, ends = spread([found[(method, 'other light') + way]])
-            point(axis, times[0], fill, name, score[0], ends)
-    for row in tables.rows('learned_poses.csv'):
-        name = '%s%s, %s' % (row['detector'].replace('-n16', ''), ' + ' + row['matches'] if row['matches'].endswith('Glue') else '', row['points'])
-        for fill, kind in zip(kinds, ('plain_5', 'refined_5')):
-            if row[kind] and row['milliseconds']:
-                point(other, float(row['milliseconds']), fill, name, float(row[kind]))
-    axis.set(xscale='log', ylim=(0, 1), xlim=(1, 1000), title='144 pairs, measured here', xlabel='ms to find and describe 1000 points of an image',
-             ylabel='score of poses')
-    other.set(xscale='log', xlim=(5, 10000), title='158 other pairs, with the networks', xlabel='ms to find, describe and match a pair')
-    for one in (axis, other):
-        one.xaxis.set_major_formatter('{x:g}')
-        one.minorticks_off()
-    other.legend(handles=[plt.Line2D([], [], marker='o', fillstyle=fill, color=GREY, linewidth=0, label=label) for fill, label in kinds.items()],
-                 loc='lower right', frameon=False, fontsize='small')
+    """Poses in other light over the processor time that they take, of the same pairs: each detector's line goes from few points to many."""
+    figure, axis = plt.subplots(figsize=(WIDTH, 4.2), layout='constrained')
+    lines = {}
+    for (detector, points, _), ways in tables.poses_by_time().items():
+        lines.setdefault(detector, []).append((points, ways))
+    for detector, each in lines.items():
+        colour = RED if detector == 'recommended chain' else BLUE if detector.startswith('ALIKED') else GREY
+        for way, fill in (('plain', 'none'), ('refined', 'full')):
+            rows = [ways[way] for _, ways in sorted(each, key=lambda one: one[0])]
+            score, ends = spread(rows)
+            axis.errorbar([float(row['milliseconds']) for row in rows], score, ends, marker='o', fillstyle=fill, color=colour,
+                          linestyle='-' if way == 'refined' else ':', **ENDS)
+        many = max(points for points, _ in each)
+        for points, ways in each:
+            text, where = (str(points), (3, -13)) if points < many else ('%s, %d' % (detector.replace('-n16', ' + LightGlue'), points), (0, 24))
+            axis.annotate(text, (float(ways['refined']['milliseconds']), float(ways['refined']['at_5'])), where, textcoords='offset points',
+                          ha='left' if points < many else 'center', fontsize='small', color=colour)
+    axis.set(xscale='log', ylim=(0, 1), xlim=(5, 20000), xlabel='ms of one core, from two images to the pose', ylabel='score of poses')
+    axis.xaxis.set_major_formatter('{x:g}')
+    axis.minorticks_off()
+    axis.legend(handles=[plt.Line2D([], [], marker='o', fillstyle=fill, color=GREY, linestyle=style, label=label) for fill, style, label in (
+        ('none', ':', 'matches as they are, PoseLib'), ('full', '-', 'propagateMatches, findRelativePose'))], loc='lower right', frameon=False, fontsize='small')
     return svg(figure)
 
 

@@ -124,6 +124,8 @@ PLANS = {
     'alignment.csv': (alignment_place, ('model',), {'found': column('found'), 'squares': column('squares'), 'within_1': within(1), 'within_3': within(3)}),
     'estimators.csv': (light_place, ('detector', 'descriptor', 'points', 'estimator'),
                        {'inliers': column('inliers'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
+    'poses_by_time.csv': (light_place, ('detector', 'points', 'matches', 'estimator'),
+                          {'milliseconds': column('milliseconds'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
 }
 
 

@@ -47,20 +47,48 @@ def learned_points():
                  [[row[c] for c in ('detector', 'pairs', 'bytes', 'correct', 'iib')] for row in rows('learned.csv')])
 
 
-def learned_poses():
-    """Poses by learned features and by the chain, on pairs of their own."""
-    return table(['points of', 'points', 'matches', 'as they are', 'refined', 'ms a pair'], [
-        [row['detector'], row['points'], row['matches'], row['plain_5'] or '–', row['refined_5'], row['milliseconds'] or '–'] for row in rows('learned_poses.csv')])
+@functools.lru_cache(None)
+def poses_by_time():
+    """Of each detector, number of points and way of matching: of its matches as they are, by the better of PoseLib's thresholds, and refined
+    here, milliseconds a pair and the areas up to 5 and 10 degrees."""
+    found = {}
+    for row in rows('poses_by_time.csv'):
+        ways, way = found.setdefault((row['detector'], int(row['points']), row['matches']), {}), 'plain' if 'PoseLib' in row['estimator'] else 'refined'
+        if way not in ways or float(row['at_5']) > float(ways[way]['at_5']):
+            ways[way] = row
+    return dict(sorted(found.items(), key=lambda item: float(item[1]['refined']['at_5'])))
+
+
+def poses_and_time():
+    """Poses by each detector over processor time, on the same pairs."""
+    lines = []
+    for (detector, points, matches), ways in reversed(poses_by_time().items()):
+        lines.append([detector, str(points), matches])
+        for row in (ways['plain'], ways['refined']):
+            lines[-1] += ['%.2f (%.2f to %.2f)' % tuple(float(row[name]) for name in ('at_5', 'low', 'high')), '%.2f' % float(row['at_10']),
+                          '%.0f' % float(row['milliseconds'])]
+    return table(['points of', 'points', 'matches', 'as they are, PoseLib', 'up to 10°', 'ms a pair', 'refined here', 'up to 10°', 'ms a pair'], lines)
+
+
+def learned_limit():
+    """README's sentence on learned features."""
+    found = poses_by_time()
+    ours, theirs = found['recommended chain', 4000, 'mutual, a ratio']['refined'], found['ALIKED-n16', 1000, 'LightGlue']['refined']
+    return ('- With a GPU take [learned features](doc/guide.md#learned-features): ALIKED with LightGlue finds better poses by as many points. On a CPU 4000 points\n'
+            '  of the recommended chain are level with 1000 of ALIKED, %.2f and %.2f, [in 1/%.0f of the time](doc/results/README.md#learned-features-and-time).' % (
+                float(ours['at_5']), float(theirs['at_5']), float(theirs['milliseconds']) / float(ours['milliseconds'])))
 
 
 def learned_claim():
     """What may be said of learned features and the chain."""
-    found = summaries.by(rows('learned_poses.csv'), 'detector', 'matches', 'points')
-    few, many, learned = (found[key] for key in (('recommended chain', 'its own', '1000'), ('recommended chain', 'its own', '2000'), ('ALIKED-n16', 'LightGlue', '1000')))
-    return ('What may be said of it: *by number of points* ALIKED with LightGlue finds better poses than the chain, of 1000 points as they are %s\n'
-            'against %s, refined %s against %s. *By time* 2000 refined points of the chain, %s, are level with 1000 of ALIKED and LightGlue as people run\n'
-            'them, %s, in 1/%.0f of the processor time to find, describe and match, to which refinement adds some.' % (learned['plain_5'], few['plain_5'], learned['refined_5'], few['refined_5'], many['refined_5'],
-                                                            learned['plain_5'], float(learned['milliseconds']) / float(many['milliseconds'])))
+    found = poses_by_time()
+    chain = {points: found['recommended chain', points, 'mutual, a ratio']['refined'] for points in (1000, 2000, 4000)}
+    few, many = (found['ALIKED-n16', points, 'LightGlue'] for points in (1000, 2048))
+    return ('*By number of points* ALIKED with LightGlue finds better poses than the chain: of 1000 points %s as they are and %s refined, of 2048 %s and %s,\n'
+            'the chain, refined, of 1000, 2000 and 4000 points %s, %s and %s. *By time* 4000 points of the chain take %.0f ms of one core to their pose,\n'
+            '1000 of ALIKED %.0f: %.0f times as long.' % (
+                *('%.2f' % float(ways[way]['at_5']) for ways in (few, many) for way in ('plain', 'refined')), *('%.2f' % float(row['at_5']) for row in chain.values()),
+                float(chain[4000]['milliseconds']), float(few['refined']['milliseconds']), float(few['refined']['milliseconds']) / float(chain[4000]['milliseconds'])))
 
 
 def paper(question):
@@ -365,7 +393,7 @@ def photographs_of_many():
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
-    step_by_step, mapped_index, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, learned_poses, learned_claim,
+    step_by_step, mapped_index, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, learned_claim, learned_limit,
     detected_points, uncertainty, night)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})

