@@ -1,6 +1,13 @@
 """Poses and alignment, from arrays."""
 import pickle
+import subprocess
+import sys
 import unittest
+
+try:
+    import resource
+except ImportError:  # Windows
+    resource = None
 
 import numpy as np
 
@@ -58,3 +65,18 @@ class Alignment(unittest.TestCase):
         alignment = opencv_iib.alignImages(*(texture(640, 480, seed=seed)[290:] for seed in (1, 2)))  # below their rectangle
         self.assertEqual((alignment.found, alignment.transform, alignment.error), (False, None, None))
         self.assertRegex(alignment.reason, '^the images have too few matches$|no more than chance may give')
+
+    @unittest.skipIf(resource is None, 'no account of memory on this system')
+    def test_12_megapixels_in_colour_take_less_than_500_megabytes(self):
+        program = """
+import resource, sys
+import numpy as np
+import opencv_iib
+from support import texture
+picture = np.repeat(np.repeat(texture(200, 150, seed=1), 20, 0), 20, 1)[:, :, None].repeat(3, 2)
+assert picture.size == 36000000
+assert opencv_iib.alignImages(picture, picture[:, 40:] // 2 + 40).found
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1 << 20 if sys.platform == 'darwin' else 1 << 10))
+"""
+        done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True)
+        self.assertLess(float(done.stdout or 'inf'), 500, done.stderr)

@@ -120,6 +120,8 @@ def steps():
         yield 'from two images to a pose, %d points, ms' % points, '%.1f', ms('IIB_Pair_pose', points, 1)
         yield "the same, over ORB's points and codes of the two", '%.2f', ms('IIB_Pair_pose', points, 1) / ms('IIB_Pair_orb', points, 1)
         yield 'the same: times as fast on two threads', '%.2f', ms('IIB_Pair_pose', points, 1) / ms('IIB_Pair_pose', points, 2)
+    for size in (2, 12, 50):
+        yield '`alignImages`, %d megapixels in colour, ms' % size, '%.0f', ms('IIB_Align_noon_and_winter', size)
     yield '`Localizer::localize`, 768 x 512, ten images in the map, 1000 points, ms', '%.0f', ms('IIB_Localize_relit_among_ten', 1000)
     yield ('a frame of 640 x 480: describe and match 1000 points on two threads, over ORB and BFMatcher', '%.2f',
            ms('IIB_Frame_vga', 'default') / ms('IIB_Frame_vga', 'ORB'))
