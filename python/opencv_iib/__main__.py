@@ -97,7 +97,7 @@ def _call(function: Callable[..., Any], arguments: argparse.Namespace, **more: A
 
 
 def _parser() -> _Parser:
-    parser = _Parser(prog='opencv-iib', description=__doc__, epilog=STATUS)
+    parser = _Parser(prog='opencv-iib', description=__doc__, epilog='example: opencv-iib demo day.jpg night.jpg; ' + STATUS)
     parser.add_argument('--version', action='version', version=f'opencv_iib {__version__}')
     commands = parser.add_subparsers(dest='command', required=True)
 

@@ -151,6 +151,11 @@ class Help(unittest.TestCase):
             self.assertRegex(lines[-1], f'^example: opencv-iib {command} ')
             self.assertEqual(_parser().parse_args(shlex.split(lines[-1])[2:]).command, command)
 
+    def test_of_all_commands_together(self):
+        with redirect_stdout(io.StringIO()) as out:
+            self.assertRaises(SystemExit, _parser().parse_args, ['--help'])
+        self.assertIn('example: opencv-iib demo ', out.getvalue())
+
 
 class Mistakes(InFolder):
 
