@@ -171,13 +171,14 @@ def _files_below(folder: str) -> list[str]:
 
 
 @contextmanager
-def new_results(out: str, command: str) -> Iterator[str]:
+def new_results(out: str, command: str, state: str = '') -> Iterator[str]:
     """A folder to write files to that were planned, which take their place in that of the results when the block ends without an error.
 
     Until then earlier results stay there. Nothing is removed or replaced but what the record tells, if it still is as it was written.
 
     :param out: made if it is missing; a link is followed, also if nothing is at its end yet.
     :param command: whose results are replaced.
+    :param state: a file that tells of what the others are: it is not there while they are replaced.
     :raises FileExistsError: for a folder that holds something else, or that another process is writing.
     """
     target = os.path.realpath(out)
@@ -200,7 +201,7 @@ def new_results(out: str, command: str) -> Iterator[str]:
     try:
         _record(part, command, [])
         yield part
-        _publish(part, target, command, old)
+        _publish(part, target, command, old, state)
     finally:
         _discard(part, _recorded(part, command, _files_below(part)))
         del lock
@@ -239,14 +240,15 @@ def _is_as_written(folder: str, name: str, recorded: dict[str, set[Optional[int]
     return True
 
 
-def _publish(part: str, target: str, command: str, old: dict[str, set[Optional[int]]]) -> None:
+def _publish(part: str, target: str, command: str, old: dict[str, set[Optional[int]]], state: str) -> None:
     new = {name: _size(part, name) for name in _files_below(part) if name != RECORD}
     for name in new:
         if os.path.lexists(os.path.join(target, name)) and not (name in old and _is_as_written(target, name, old)):
             raise FileExistsError(f'{os.path.join(target, name)} has come there meanwhile: remove it, or choose another folder')
     # Both, until all are there: a process may be killed in between.
     _record(target, command, [*new.items(), *((name, size) for name, sizes in old.items() for size in sizes)])
-    for name in sorted(new):
+    _remove(target, [name for name in old if name == state])
+    for name in sorted(new, key=lambda name: (name == state, name)):
         os.makedirs(os.path.dirname(os.path.join(target, name)), exist_ok=True)
         os.replace(os.path.join(part, name), os.path.join(target, name))
     _remove(target, [name for name in old if name not in new and name != RECORD and _is_as_written(target, name, old)])

@@ -126,7 +126,7 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     settings = [*options, os.path.abspath(reference), work.stamp(reference), __version__]
     stamps = {path: work.stamp(path) for path in paths}
     stopped: Optional[BaseException] = None
-    with new_results(out, 'align') as folder:
+    with new_results(out, 'align', STATE) as folder:
         done, old_part = _known(out, settings, stamps)
         known, names = list(done), _file_names(paths, done)
         pictures = [stem + suffix for stem in ('reference', *names.values()) for suffix in FORMATS.values()]

@@ -4,7 +4,9 @@ import itertools
 import json
 import os
 import re
+import shutil
 import unittest
+import zlib
 from pathlib import Path
 from unittest import mock
 
@@ -355,6 +357,29 @@ class Align(Commands):
         self.align(*paths, '--model', 'affine', calls=4)
         self.assertEqual(len(self.align(*paths[:2], '--model', 'affine', calls=0)), 1)
         self.assertEqual(sorted(os.listdir(self.folder / 'out')), [RECORD, 'a.png', 'align.json', 'index.html', 'reference.png', 'transforms.csv'])
+
+    def test_a_call_that_is_killed_while_pictures_take_their_places_leaves_none_of_other_options(self):
+        paths = self.pictures('r.png', 'a.png', 'b.png', 'c.png')[:3]
+        cv2.imwrite(paths[2], cv2.warpAffine(cv2.imread(paths[1], 0), np.array([[1, .02, 20], [-.02, 1, 30.]]), (640, 480)))
+        cv2.imwrite(paths[1], cv2.imread(paths[1], 0)[30:, 40:])
+        pictures = ('a.png', 'b.png', 'reference.png')
+        for options in (('--interpolation', 'nearest'), ('--crop',)):
+            shutil.rmtree(self.folder / 'out', ignore_errors=True)
+            self.align(*paths, *options)
+            expected = [zlib.crc32((self.folder / 'out' / name).read_bytes()) for name in pictures]
+            for moves in (1, 2, 5):
+                shutil.rmtree(self.folder / 'out')
+                self.align(*paths)
+
+                def moved(*names, real=os.replace, left=[moves]):
+                    left[0] -= 1
+                    if left[0] < 0:
+                        raise KeyboardInterrupt
+                    real(*names)
+                with mock.patch('os.replace', moved), mock.patch('opencv_iib._files._discard'):
+                    self.assertEqual(run_command('align', *paths, *options, '--out', self.folder / 'out')[0], 130)
+                self.align(*paths, *options)
+                self.assertEqual([zlib.crc32((self.folder / 'out' / name).read_bytes()) for name in pictures], expected, moves)
 
     def test_folders_and_patterns(self):
         paths = self.pictures('r.png', 'f/1.png', 'f/2.png', 'f/more/1.png', '[x].png')
