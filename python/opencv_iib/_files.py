@@ -14,6 +14,7 @@ from opencv_iib._streams import check_open_file, is_open_file, write_to_open_fil
 
 PART = '.iib-'  #: how the folder's name begins that results are written to, within that of the results
 RECORD = '.made-by-opencv-iib'  #: a file in both: which command has written which files, of how many bytes; all others are the user's
+HALF = r'[.]\d+-\d+[.]tmp'  #: how the name ends of what a WholeFile is called until it is whole
 
 
 def output_file(path: str) -> str:
@@ -187,7 +188,7 @@ def new_results(out: str, command: str, state: str = '') -> Iterator[str]:
     for name in old:
         if not _is_as_written(target, name, old):
             raise FileExistsError(f'{out} holds {name}, which was changed since it was written: move it away, or choose another folder')
-    killed = {name.split('/')[0] for name in there if re.fullmatch(re.escape(PART) + r'\w{8}/' + re.escape(RECORD), name)}
+    killed = {name.split('/')[0] for name in there if re.fullmatch(re.escape(PART) + r'\w{8}/' + re.escape(RECORD) + f'({HALF})?', name)}
     parts = {folder: _recorded(os.path.join(target, folder), command, [name[len(folder) + 1:] for name in there if name.startswith(folder + '/')])
              for folder in killed}
     own = [*old, *(f'{folder}/{name}' for folder, names in parts.items() for name in names)]
@@ -226,18 +227,34 @@ def _recorded(folder: str, command: str, there: Iterable[str]) -> dict[str, set[
             for line in file:  # the last one may be cut off
                 name, size = json.loads(line)
                 sizes.setdefault(name, set()).add(size)
-    whole = {name: re.sub(r'[.]\d+-\d+[.]tmp$', '', name) for name in there}  # as WholeFile calls it until then
-    return {name: sizes[whole[name]] if whole[name] == name else {None} for name in whole if whole[name] in sizes}
+    begins = {_begin_of_part(name) for name in (*sizes, RECORD)}
+    known: dict[str, set[Optional[int]]] = {}
+    for name in there:
+        begin = re.sub(HALF + '$', '', name)
+        if name in sizes:
+            known[name] = sizes[name]
+        elif begin != name and (begin in begins or begin == 'probe' and not _size(folder, name)):  # which is OutputFolder's
+            known[name] = {None}
+    return known
+
+
+def _begin_of_part(name: str) -> str:
+    """As C++'s beginOf, of what a WholeFile is called until it is whole."""
+    folder, file = os.path.split(name)
+    return name if len(os.fsencode(file)) <= 200 else f'{folder}/iib'.lstrip('/')
 
 
 def _size(folder: str, name: str) -> int:
-    return os.lstat(os.path.join(folder, name)).st_size
+    """-1 of one that is not there."""
+    try:
+        return os.lstat(os.path.join(folder, name)).st_size
+    except FileNotFoundError:
+        return -1
 
 
 def _is_as_written(folder: str, name: str, recorded: dict[str, set[Optional[int]]]) -> bool:
-    with suppress(FileNotFoundError):
-        return not recorded[name].isdisjoint({None, _size(folder, name)}) and not os.path.islink(os.path.join(folder, name))
-    return True
+    size = _size(folder, name)
+    return size < 0 or not recorded[name].isdisjoint({None, size}) and not os.path.islink(os.path.join(folder, name))
 
 
 def _publish(part: str, target: str, command: str, old: dict[str, set[Optional[int]]], state: str) -> None:

@@ -186,6 +186,31 @@ class Files(InFolder):
         self.results('b')
         self.assertEqual(sorted(os.listdir(self.folder / 'out')), [RECORD, 'b'])
 
+    def test_files_that_a_killed_process_was_writing_are_known_by_their_names(self):
+        long = '\u00e9' * 100 + 'x'  # 201 bytes, in place of which WholeFile has others
+        killed = '.12-3.tmp'
+        with mock.patch('opencv_iib._files._discard'), self.assertRaises(RuntimeError), self.started(long, 'views/' + long) as part:
+            os.mkdir(os.path.join(part, 'views'))
+            for name in ('', 'views/'):
+                file = _core.WholeFile(os.path.join(part, name + long))
+                half = os.fsdecode(file.part)
+                file.discard()
+                Path(half).touch()
+            raise RuntimeError
+        out = self.folder / 'out'
+        (out / '.iib-abcdefgh').mkdir()
+        for name in (f'.iib-abcdefgh/{RECORD}{killed}', RECORD + killed, 'probe' + killed):
+            (out / name).touch()
+        self.results('a')
+        self.assertEqual(sorted(os.listdir(out)), [RECORD, 'a'])
+        self.write('out/probe' + killed)  # of another size than the command's own
+        with self.assertRaisesRegex(FileExistsError, 'holds probe'):
+            self.results('a')
+        os.rename(out / ('probe' + killed), out / ('iib' + killed))  # none of the results has so long a name
+        with self.assertRaisesRegex(FileExistsError, 'holds iib'):
+            self.results('a')
+        self.expect_precious('out/iib' + killed)
+
     def test_a_run_that_is_killed_while_results_take_their_places_is_gone_on_with(self):
         self.results('a', 'b', 'd')
         with mock.patch('os.replace', side_effect=[None, None, KeyboardInterrupt]), mock.patch('opencv_iib._files._discard'), \
