@@ -6,14 +6,14 @@ import os
 import re
 import tempfile
 from contextlib import contextmanager, suppress
-from typing import Iterable, Iterator, Optional
+from typing import Any, Iterable, Iterator, Optional
 
 from opencv_iib import _core
 from opencv_iib._arguments import MissingFile, Path, TakenFile, UnusableName
 from opencv_iib._streams import check_open_file, is_open_file, write_to_open_file
 
 PART = '.iib-'  #: how the folder's name begins that results are written to, within that of the results
-RECORD = '.made-by-opencv-iib'  #: a file in both: which command has written which files, of how many bytes; all others are the user's
+RECORD = '.made-by-opencv-iib'  #: a file in both: which command has written which files, of which size and time; all others are the user's
 HALF = r'[.]\d+-\d+[.]tmp'  #: how the name ends of what a WholeFile is called until it is whole
 
 
@@ -183,7 +183,9 @@ def new_results(out: str, command: str, state: str = '') -> Iterator[str]:
     :raises FileExistsError: for a folder that holds something else, or that another process is writing.
     """
     target = os.path.realpath(out)
-    there = _files_below(target)
+    there, other = _files_below(target), _command(target)
+    if other not in (None, command):
+        raise FileExistsError(f'{out} holds results of {other}: choose another folder')
     old = _recorded(target, command, there)
     for name in old:
         if not _is_as_written(target, name, old):
@@ -214,26 +216,34 @@ def plan(part: str, names: Iterable[str]) -> None:
         file.writelines(json.dumps([name, None]) + '\n' for name in names)
 
 
-def _record(folder: str, command: str, names: Iterable[tuple[str, Optional[int]]]) -> None:
+def _record(folder: str, command: str, names: Iterable[tuple[str, Optional[str]]]) -> None:
     lines = [json.dumps(line) + '\n' for line in (command, *names, (RECORD, None))]
     write_whole(os.path.join(folder, RECORD), ''.join(lines).encode())
 
 
-def _recorded(folder: str, command: str, there: Iterable[str]) -> dict[str, set[Optional[int]]]:
-    """Of the files that are there, those that a command has written, or was writing, and their sizes, None if that was not known yet."""
-    sizes: dict[str, set[Optional[int]]] = {}
-    with suppress(OSError, ValueError, TypeError), open(os.path.join(folder, RECORD), encoding='ascii') as file:
-        if json.loads(next(file, 'null')) == command:
+def _command(folder: str) -> Any:
+    """Whose record is there; None without one."""
+    with suppress(OSError, ValueError), open(os.path.join(folder, RECORD), encoding='ascii') as file:
+        return json.loads(next(file, 'null'))
+    return None
+
+
+def _recorded(folder: str, command: str, there: Iterable[str]) -> dict[str, set[Optional[str]]]:
+    """Of the files that are there, those that a command has written, or was writing, and their stamps, None if that was not known yet."""
+    stamps: dict[str, set[Optional[str]]] = {}
+    if _command(folder) == command:
+        with suppress(OSError, ValueError, TypeError), open(os.path.join(folder, RECORD), encoding='ascii') as file:
+            next(file)
             for line in file:  # the last one may be cut off
-                name, size = json.loads(line)
-                sizes.setdefault(name, set()).add(size)
-    begins = {_begin_of_part(name) for name in (*sizes, RECORD)}
-    known: dict[str, set[Optional[int]]] = {}
+                name, stamp = json.loads(line)
+                stamps.setdefault(name, set()).add(stamp)
+    begins = {_begin_of_part(name) for name in (*stamps, RECORD)}
+    known: dict[str, set[Optional[str]]] = {}
     for name in there:
         begin = re.sub(HALF + '$', '', name)
-        if name in sizes:
-            known[name] = sizes[name]
-        elif begin != name and (begin in begins or begin == 'probe' and not _size(folder, name)):  # which is OutputFolder's
+        if name in stamps:
+            known[name] = stamps[name]
+        elif begin != name and (begin in begins or begin == 'probe' and _stamp(folder, name).startswith('0 ')):  # which is OutputFolder's
             known[name] = {None}
     return known
 
@@ -244,26 +254,26 @@ def _begin_of_part(name: str) -> str:
     return name if len(os.fsencode(file)) <= 200 else f'{folder}/iib'.lstrip('/')
 
 
-def _size(folder: str, name: str) -> int:
-    """-1 of one that is not there."""
-    try:
-        return os.lstat(os.path.join(folder, name)).st_size
-    except FileNotFoundError:
-        return -1
+def _stamp(folder: str, name: str) -> str:
+    """Size and time of a file; '' of one that is not there."""
+    with suppress(FileNotFoundError):
+        status = os.lstat(os.path.join(folder, name))
+        return f'{status.st_size} {status.st_mtime_ns}'
+    return ''
 
 
-def _is_as_written(folder: str, name: str, recorded: dict[str, set[Optional[int]]]) -> bool:
-    size = _size(folder, name)
-    return size < 0 or not recorded[name].isdisjoint({None, size}) and not os.path.islink(os.path.join(folder, name))
+def _is_as_written(folder: str, name: str, recorded: dict[str, set[Optional[str]]]) -> bool:
+    stamp = _stamp(folder, name)
+    return not stamp or not recorded[name].isdisjoint({None, stamp}) and not os.path.islink(os.path.join(folder, name))
 
 
-def _publish(part: str, target: str, command: str, old: dict[str, set[Optional[int]]], state: str) -> None:
-    new = {name: _size(part, name) for name in _files_below(part) if name != RECORD}
+def _publish(part: str, target: str, command: str, old: dict[str, set[Optional[str]]], state: str) -> None:
+    new = {name: _stamp(part, name) for name in _files_below(part) if name != RECORD}
     for name in new:
         if os.path.lexists(os.path.join(target, name)) and not (name in old and _is_as_written(target, name, old)):
             raise FileExistsError(f'{os.path.join(target, name)} has come there meanwhile: remove it, or choose another folder')
     # Both, until all are there: a process may be killed in between.
-    _record(target, command, [*new.items(), *((name, size) for name, sizes in old.items() for size in sizes)])
+    _record(target, command, [*new.items(), *((name, stamp) for name, stamps in old.items() for stamp in stamps)])
     _remove(target, [name for name in old if name == state])
     for name in sorted(new, key=lambda name: (name == state, name)):
         os.makedirs(os.path.dirname(os.path.join(target, name)), exist_ok=True)

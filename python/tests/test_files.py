@@ -145,7 +145,7 @@ class Files(InFolder):
                 with self.assertRaisesRegex(FileExistsError, f'holds {name}'):
                     self.results('a', 'b', 'c')
                 os.unlink(self.folder / 'out' / name)
-        with self.assertRaisesRegex(FileExistsError, f'holds (a|{RECORD})'):
+        with self.assertRaisesRegex(FileExistsError, 'holds results of measure'):
             self.results('a', command='another')
         self.write('thesis')
         for line in ('["../thesis", null]', '["a', '3'):
@@ -153,6 +153,19 @@ class Files(InFolder):
                 record.write(line + '\n')
             self.results('a')
             self.expect_precious('thesis')
+
+    def test_a_result_that_was_changed_to_one_of_its_size_is_the_users(self):
+        self.results('a')
+        (self.folder / 'out/a').write_text('MINE!!')
+        os.utime(self.folder / 'out/a', ns=(1, 1))
+        with self.assertRaisesRegex(FileExistsError, 'holds a, which was changed'):
+            self.results('a')
+        self.assertEqual((self.folder / 'out/a').read_text(), 'MINE!!')
+
+    def test_results_of_another_command_are_told_by_its_name(self):
+        self.results('a', command='localize')
+        with self.assertRaisesRegex(FileExistsError, 'out holds results of localize: choose another folder'):
+            self.results('a', command='align')
 
     def test_what_comes_into_the_folder_meanwhile_stays(self):
         self.results('sub/a', 'b', 'c')
