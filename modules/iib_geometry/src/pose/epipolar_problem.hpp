@@ -23,6 +23,7 @@ public:
     int size() const { return (int)first_.size(); }
     double mostScale() const { return mostScale_; }
     int sampleSize() const { return 5; }
+    int fewestSamples() const { return 100; }
     int parameters() const { return 5; }
 
     //! The poses that see the sample in front of both cameras.

@@ -22,6 +22,7 @@ public:
     int size() const { return (int)image_.size(); }
     double mostScale() const { return .5; }  // its matches are refined
     int sampleSize() const { return parameters() / 2; }
+    int fewestSamples() const { return 150; }
     int parameters() const { return (int)basis_.size(); }
 
     void propose(const std::vector<int>& sample, std::vector<Matx33d>& transforms) const;

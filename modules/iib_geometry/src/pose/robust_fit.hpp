@@ -19,6 +19,7 @@ A class Problem holds the matches and has
     int size()      number of matches
     double mostScale()                 by which models are looked for, pixels
     int sampleSize(), parameters()     matches that give a model; its degrees of freedom, N at most
+    int fewestSamples()                that are tried, however many matches agree
     propose(sample, models)            models that agree with a sample: indices of sampleSize() matches
     double loss(model, scale, limit)   the sum over all matches, or anything over the limit
     squaredErrors(model, errors)       of all matches, pixels^2; infinite where the model forbids the match
@@ -178,7 +179,6 @@ itself may win. */
 template <class Problem> Fit<Problem> search(const Problem& problem, double scale, int mostTrials)
 {
     typedef typename Problem::Model Model;
-    const int fewestTrials = 150;
     const double roughly = 1e-3;  // how much less of its loss a model is polished for
     const size_t most = 10;  // are polished in the end: that of the least loss need not lead to the best one
     const double missed = 1e-4;  // probability that no sample was of right matches alone
@@ -212,7 +212,7 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
         // Fischler and Bolles (1981): samples until one in 1 / missed searches had none of right matches alone.
         const double right = std::pow((double)near / count, size);  // probability of such a sample
         const double wanted = right > 0 ? std::log(missed) / std::log1p(-std::min(right, .999)) : none;
-        trials = std::max<double>(fewestTrials, std::min<double>(mostTrials, wanted));
+        trials = std::max<double>(problem.fewestSamples(), std::min<double>(mostTrials, wanted));
     };
     const auto limitOf = [&] { return best.size() < most ? none : best.back().first; };
     for (int trial = 0; trial < trials;)

@@ -138,6 +138,7 @@ struct HopelessProblem
 
     int size() const { return 10000; }
     int sampleSize() const { return 5; }
+    int fewestSamples() const { return 100; }
     int parameters() const { return 1; }
     void propose(const std::vector<int>&, std::vector<double>& models) const
     {
@@ -176,6 +177,7 @@ struct SenselessProblem
     int size() const { return 40; }
     double mostScale() const { return 1; }
     int sampleSize() const { return 3; }
+    int fewestSamples() const { return 150; }
     int parameters() const { return 1; }
     void propose(const std::vector<int>& sample, std::vector<Model>& models) const
     {
