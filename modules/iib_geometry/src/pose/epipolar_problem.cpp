@@ -153,11 +153,13 @@ double EpipolarProblem::parallax(const RelativePose& pose, int i) const
                       : std::numeric_limits<double>::infinity();
 }
 
+const int STEPS = 6;  // five, and one more for an even number
+
 //! A pose and its derivatives.
 struct EpipolarProblem::Linear
 {
     Matx33d E;
-    double byStep[9][5];  //!< of E's entries: of [t]x [e]x R, and of [b]x R
+    double byStep[9][STEPS] = {};  //!< of E's entries: of [t]x [e]x R, and of [b]x R
 
     explicit Linear(const RelativePose& pose) : E(essentialOf(pose))
     {
@@ -180,24 +182,33 @@ struct EpipolarProblem::Linear
 Row<EpipolarProblem::Step> EpipolarProblem::row(
         const Linear& linear, const Point2d& first, const Point2d& second) const
 {
-    const Vec3d u(first.x, first.y, 1), v(second.x, second.y, 1);
-    const Vec3d line = linear.E * u, back = linear.E.t() * v;
-    const Vec3d weightedLine(weights_[0] * line[0], weights_[1] * line[1], 0),
-            weightedBack(weights_[2] * back[0], weights_[3] * back[1], 0);
-    const double length2 = weightedLine.dot(line) + weightedBack.dot(back) + NOWHERE;
-    const double inverse = 1 / std::sqrt(length2), r = v.dot(line) * inverse;
+    const double u[] = {first.x, first.y, 1}, v[] = {second.x, second.y, 1};
+    const Matx33d& E = linear.E;
+    double line[3], back[2];
+    for (int k = 0; k < 3; k++)
+        line[k] = E(k, 0) * u[0] + E(k, 1) * u[1] + E(k, 2);
+    for (int k = 0; k < 2; k++)
+        back[k] = E(0, k) * v[0] + E(1, k) * v[1] + E(2, k);
+    const double weightedLine[] = {weights_[0] * line[0], weights_[1] * line[1], 0},
+                 weightedBack[] = {weights_[2] * back[0], weights_[3] * back[1], 0};
+    const double length2 = weightedLine[0] * line[0] + weightedLine[1] * line[1] + weightedBack[0] * back[0] +
+                           weightedBack[1] * back[1] + NOWHERE;
+    const double inverse = 1 / std::sqrt(length2), r = (v[0] * line[0] + v[1] * line[1] + line[2]) * inverse;
     // dr = (v' dE u) / length - r (line' W dE u + back' W dE' v) / length^2: both are sums over dE's entries
-    double byE[9];
-    for (int k = 0; k < 9; k++)
-        byE[k] = (v[k / 3] * u[k % 3] -
-                         r * inverse * (weightedLine[k / 3] * u[k % 3] + weightedBack[k % 3] * v[k / 3])) *
-                 inverse;
+    const double pull = r * inverse;
+    double J[STEPS] = {};
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+        {
+            const double byE =
+                    (v[a] * u[b] - pull * (weightedLine[a] * u[b] + weightedBack[b] * v[a])) * inverse;
+            for (int k = 0; k < STEPS; k++)  // steps side by side, so that compilers make vectors of them
+                J[k] += byE * linear.byStep[3 * a + b][k];
+        }
     Row<Step> row;
     row.r = r;
     row.r2 = r * r;
-    for (int e = 0; e < 9; e++)  // steps side by side, so that compilers make vectors of them
-        for (int k = 0; k < 5; k++)
-            row.J[k] += byE[e] * linear.byStep[e][k];
+    std::copy(J, J + 5, row.J.val);
     return row;
 }
 
@@ -296,12 +307,22 @@ void EpipolarProblem::linearize(const RelativePose& pose, double limit, std::vec
 {
     rows.clear();
     const Linear linear(pose);
-    for (int i = 0; i < size(); i++)
-        if (squaredError(linear.E, i) < limit)
-        {
-            rows.push_back(row(linear, first_[i], second_[i]));
-            rows.back().match = i;
-        }
+    const Matx33d essential = linear.E;
+    const Vec4d weights = weights_;
+    const Point2d *const first = first_.data(), *const second = second_.data();
+    for (int begin = 0; begin < size(); begin += STRIDE)
+    {
+        double errors[STRIDE];
+        const int count = std::min(STRIDE, size() - begin);
+        for (int i = 0; i < count; i++)
+            errors[i] = squaredErrorOf(essential, weights, first[begin + i], second[begin + i]);
+        for (int i = 0; i < count; i++)
+            if (errors[i] < limit)
+            {
+                rows.push_back(row(linear, first[begin + i], second[begin + i]));
+                rows.back().match = begin + i;
+            }
+    }
 }
 
 Square<EpipolarProblem::Step> EpipolarProblem::noiseInDerivatives(
