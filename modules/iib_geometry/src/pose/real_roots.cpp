@@ -58,7 +58,7 @@ int rootsInUnit(const double* p, int degree, double* roots)
     int count = 0;
     for (int d = degree - 1; d >= 0; d--)
     {
-        const double precision = d ? 1e-7 : 1e-14;
+        const double precision = d ? 1e-4 : 1e-9;  // of the last step: the error is about its square
         std::copy(roots, roots + count, ends);
         ends[count] = 1;
         const int extremes = count;
