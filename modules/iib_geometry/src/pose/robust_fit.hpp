@@ -181,6 +181,7 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
     typedef typename Problem::Model Model;
     const double roughly = 1e-3;  // how much less of its loss a model is polished for
     const size_t most = 10;  // are polished in the end: that of the least loss need not lead to the best one
+    const size_t expected = 2;   // are polished before: by the better one samples are expected
     const double missed = 1e-4;  // probability that no sample was of right matches alone
     const double none = std::numeric_limits<double>::max();
     Fit<Problem> fit;
@@ -200,6 +201,7 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
     std::vector<std::pair<double, Model>> best;  // losses in order, and models
     std::vector<double> squared;
     double leastLoss = none, trials = mostTrials;
+    bool better = false;  // whether there is a better one than when samples were last expected
     const auto expect = [&](Model model) {
         polish(problem, scale, roughly, model);
         const double loss = problem.loss(model, scale, leastLoss);
@@ -235,7 +237,8 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
             for (const Model& model : proposal.models)
                 proposal.losses.push_back(problem.loss(model, scale, limit));
         });
-        for (size_t i = 0; i < proposals.size() && trial < trials; i++, trial++)
+        for (size_t i = 0; i < proposals.size() && trial < trials; i++)
+        {
             for (size_t k = 0; k < proposals[i].models.size(); k++)
             {
                 const std::pair<double, Model> one(proposals[i].losses[k], proposals[i].models[k]);
@@ -246,9 +249,15 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
                 auto place = best.begin();
                 while (place != best.end() && place->first <= one.first)
                     ++place;
-                if (best.insert(place, one) == best.begin())
-                    expect(one.second);
+                better |= best.insert(place, one) == best.begin();
             }
+            if (++trial >= problem.fewestSamples() && better)
+            {
+                for (size_t k = 0; k < std::min(best.size(), expected); k++)
+                    expect(best[k].second);
+                better = false;
+            }
+        }
     }
 
     fit.wantsMore = trials == mostTrials;
