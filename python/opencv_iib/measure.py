@@ -36,7 +36,7 @@ class Measured(NamedTuple):
     bits: NDArray[np.int32]  #: of each match, that differ
     pose: Union[FoundPose, NoPose, None]  #: None without cameras
     found: bool  #: there is a pose, or without cameras more matches than chance may give agree with one epipolar geometry or homography
-    rotation: float = 0  #: degrees by which the second image had to be turned, clockwise, to be matched
+    rotation: float = 0  #: degrees by which the second image is turned against the first, clockwise, beside what EXIF tells
 
     @property
     def refined(self) -> NDArray[np.bool_]:
@@ -86,7 +86,7 @@ class Measured(NamedTuple):
         if count:
             text += f' to {np.median(self.deviations[self.refined]):.2f} pixels (median standard deviation)'
         if self.rotation:
-            text += f', one image turned by {self.rotation:.0f} degrees'
+            text += f', the second image is turned by {self.rotation:.0f} degrees clockwise'
         if self.pose is None:
             return text + '\nthese may not show the same: no more matches agree with one geometry than chance may give' * (not self.found)
         if not self.pose.found:

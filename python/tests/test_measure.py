@@ -381,6 +381,16 @@ class Align(Commands):
                 self.align(*paths, *options)
                 self.assertEqual([zlib.crc32((self.folder / 'out' / name).read_bytes()) for name in pictures], expected, moves)
 
+    def test_the_rotation_is_that_of_the_second_image_clockwise_as_match_tells_it(self):
+        first = texture(640, 480, seed=3)
+        paths = [self.write(name, image) for name, image in (('a.png', first), ('b.png', cv2.rotate(first, cv2.ROTATE_90_CLOCKWISE)))]
+        measured = match_images(*paths)
+        self.assertAlmostEqual(measured.rotation, 90, delta=2)
+        self.assertIn('the second image is turned by 90 degrees clockwise', str(measured))
+        found, = align(*paths[:1], paths[1:], str(self.folder / 'out'))
+        self.assertAlmostEqual(found.rotation, 90, delta=2)
+        self.assertIn(', turned by 90 degrees', str(found))
+
     def test_folders_and_patterns(self):
         paths = self.pictures('r.png', 'f/1.png', 'f/2.png', 'f/more/1.png', '[x].png')
         for images, count in (([self.folder / 'f'], 3), ([self.folder / 'f/*.png', paths[1]], 2), ([paths[4], self.folder / '[f]/**/*.png'], 4)):
