@@ -16,12 +16,12 @@ MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolut
 NOWHERE = 2**32 - 1  #: of a directory: behind the end of any file
 GPS_IFD, LATITUDE_REF, LATITUDE, LONGITUDE_REF, LONGITUDE, ALTITUDE_REF, ALTITUDE = 0x8825, 1, 2, 3, 4, 5, 6
 EARTH = 6371000  # metres, the radius
-BYTE, ASCII, SHORT, LONG, RATIONAL, DOUBLE = 1, 2, 3, 4, 5, 12  # TIFF's types
+BYTE, ASCII, SHORT, LONG, RATIONAL, DOUBLE, LONG8, IFD8 = 1, 2, 3, 4, 5, 12, 16, 18  # TIFF's types, the last two of files of 64 bits
 # GeoTIFF's: metres of a pixel, pixels and where they are on the Earth, or a matrix for both; and the keys of its coordinates.
 PIXEL_SCALE, TIE_POINTS, TO_MODEL, *GEO_KEYS = 33550, 33922, 34264, 34735, 34736, 34737
 START_OF_SCAN, APP1 = 0xda, 0xe1  # JPEG's markers
 Entry = tuple[int, int, Any]  #: of a TIFF directory: tag, type, and numbers or text
-TIFF = (b'II*\0', b'MM\0*', b'II+\0', b'MM\0+')  # how files begin
+TIFF = (b'II*\0', b'MM\0*', b'II+\0', b'MM\0+')  # how files begin; the last two have places of 64 bits
 
 
 def _jpeg_segments(data: bytes) -> Iterator[tuple[int, int, int]]:
@@ -46,7 +46,7 @@ def is_cut_off(data: bytes) -> bool:
 
 def _exif(data: bytes) -> bytes:
     """The TIFF structure of a file's EXIF data, in JPEG, PNG, WebP or TIFF; empty without any."""
-    if data[:4] in (b'II*\0', b'MM\0*'):
+    if data[:4] in TIFF:
         return data
     for marker, begin, end in _jpeg_segments(data):
         if marker == APP1 and data[begin:begin + 6] == b'Exif\0\0':
@@ -74,26 +74,35 @@ def _directory(tiff: bytes, at: int) -> tuple[dict[int, Any], int]:
     :raises struct.error: for one that is cut off.
     """
     order = _order(tiff)
-    count, = struct.unpack_from(order + 'H', tiff, at)
+    counted, word, room = ('Q', 'Q', 8) if tiff[:4] in TIFF[2:] else ('H', 'I', 4)
+    count, first = _unpacked(order + counted, tiff, at)[0], at + struct.calcsize(order + counted)
+    end = first + (4 + 2 * room) * count
     found: dict[int, Any] = {}
-    for entry in range(at + 2, at + 2 + 12 * count, 12):
-        tag, kind, length = struct.unpack_from(order + 'HHI', tiff, entry)
-        form = {BYTE: f'{length}B', ASCII: f'{length}s', SHORT: f'{length}H', LONG: f'{length}I', RATIONAL: f'{2 * length}I', DOUBLE: f'{length}d'}.get(kind)
+    for entry in range(first, end, 4 + 2 * room):
+        tag, kind, length = struct.unpack_from(order + 'HH' + word, tiff, entry)
+        form = {BYTE: f'{length}B', ASCII: f'{length}s', SHORT: f'{length}H', LONG: f'{length}I', RATIONAL: f'{2 * length}I', DOUBLE: f'{length}d',
+                LONG8: f'{length}Q', IFD8: f'{length}Q'}.get(kind)
         with contextlib.suppress(struct.error):  # of an entry that leads nowhere
             if form is not None and length:
                 size = struct.calcsize(order + form)
-                place, = (entry + 8,) if size <= 4 else struct.unpack_from(order + 'I', tiff, entry + 8)
-                values: Any = struct.unpack_from(order + form, tiff, place)
+                place, = (entry + 4 + room,) if size <= room else struct.unpack_from(order + word, tiff, entry + 4 + room)
+                values: Any = _unpacked(order + form, tiff, place)
                 if kind == RATIONAL:
                     values = [above / below if below else 0 for above, below in zip(values[::2], values[1::2])]
                 found[tag] = values[0].split(b'\0')[0].decode('latin-1').strip() if kind == ASCII else values
-    following = tiff[at + 2 + 12 * count:at + 6 + 12 * count]
-    return found, struct.unpack(order + 'I', following)[0] if len(following) == 4 else 0
+    following = tiff[end:end + room]
+    return found, struct.unpack(order + word, following)[0] if len(following) == room else 0
+
+
+def _unpacked(form: str, tiff: bytes, place: int) -> tuple[Any, ...]:
+    """:raises struct.error: also for a place that no computer has."""
+    return struct.unpack_from(form, tiff, min(place, len(tiff)))
 
 
 def _first_directory(tiff: bytes) -> dict[int, Any]:
     """:raises struct.error: if there is none."""
-    return _directory(tiff, struct.unpack_from(_order(tiff) + 'I', tiff, 4)[0])[0]
+    word, at = ('Q', 8) if tiff[:4] in TIFF[2:] else ('I', 4)
+    return _directory(tiff, struct.unpack_from(_order(tiff) + word, tiff, at)[0])[0]
 
 
 def _number(entries: dict[int, Any], tag: int, default: float) -> float:
@@ -123,7 +132,7 @@ def begin_at(tiff: bytearray, place: int) -> None:
 def no_data(data: bytes) -> str:
     """What GDAL has written of a TIFF's pixels without data: a number, or ''."""
     with contextlib.suppress(struct.error, ValueError):
-        if data[:4] in TIFF[:2]:
+        if data[:4] in TIFF:
             text = str(_first_directory(data)[NO_DATA]) if NO_DATA in _first_directory(data) else ''
             float(text)
             return text
@@ -143,7 +152,7 @@ def geo_entries(data: bytes) -> list[Entry]:
     kinds = {PIXEL_SCALE: DOUBLE, TIE_POINTS: DOUBLE, TO_MODEL: DOUBLE, **dict(zip(GEO_KEYS, (SHORT, DOUBLE, ASCII)))}
     found: list[Entry] = []
     with contextlib.suppress(struct.error):
-        entries = _first_directory(data) if data[:4] in TIFF[:2] else {}
+        entries = _first_directory(data) if data[:4] in TIFF else {}
         for tag, kind in kinds.items():
             if tag in entries and isinstance(entries[tag], str) == (kind == ASCII):
                 packed(kind, entries[tag])

@@ -13,7 +13,7 @@ import opencv_iib
 from collection import Collection
 from opencv_iib.colmap import FeatureOptions
 from opencv_iib.colmap.features import DETECTORS, Features, to_colmap
-from opencv_iib._exif import SAMPLES, exif_focal_length, exif_orientation, gps_place, pages_of_tiff
+from opencv_iib._exif import SAMPLES, exif_focal_length, exif_orientation, geo_entries, gps_place, no_data, pages_of_tiff
 from opencv_iib._images import decode_grey, decode_pages, in_8_bits, read_colour, read_grey, write_picture
 from support import cv2, texture
 
@@ -117,6 +117,21 @@ class Files(Collection):
                     self.assertAlmostEqual(exif_focal_length(data, 600, 400), focal)
         for data in (png, jpeg, webp, b'', tiff[:-9], big[:-1], b'II*\0' + b'\xff' * 90, jpeg[:2] + b'\xff\xe1\0\x08Exif\0\0'):
             self.assertIsNone(exif_focal_length(data, 600, 400))
+
+    def test_tiffs_of_64_bits_tell_what_those_of_32_do(self):
+        for order, head in (('<', b'II+\0'), ('>', b'MM\0+')):
+            values = struct.pack(order + '9d', .5, .5, 0, 0, 0, 0, 5e5, 4e6, 0)
+            entries = [(0x112, 3, 1, struct.pack(order + 'H6x', 6)), (33550, 12, 3, struct.pack(order + 'Q', 16)),
+                       (33922, 12, 6, struct.pack(order + 'Q', 40)), (0xA481, 2, 6, b'-9999\0\0\0')]
+            data = head + struct.pack(order + 'HHQ', 8, 0, 88) + values + struct.pack(order + 'Q', len(entries))
+            data += b''.join(struct.pack(order + 'HHQ', tag, kind, count) + value for tag, kind, count, value in entries) + bytes(8)
+            self.assertEqual((exif_orientation(data), no_data(data), geo_entries(data)),
+                             (6, '-9999', [(33550, 12, (.5, .5, 0)), (33922, 12, (0, 0, 0, 5e5, 4e6, 0))]))
+            for place in (8, 88, 104, 108, 124, 128):  # of the directory, its length, and entries that lead nowhere
+                wild = data[:place] + b'\xff' * 8 + data[place + 8:]
+                self.assertIn(exif_orientation(wild), (1, 6))
+                self.assertTrue(len(geo_entries(wild)) < 3 and exif_focal_length(wild, 60, 40) is None)
+            self.assertEqual((exif_orientation(data[:90]), no_data(data[:90]), geo_entries(data[:90])), (1, '', []))
 
     def test_exif_of_wrong_types_tells_nothing(self):
         for tag in (0x112, 0x8769, 0x8825):
