@@ -37,8 +37,8 @@ def find_images(folder: Path) -> list[str]:
 
 
 def in_order(name: str) -> tuple[list[tuple[int, str]], str]:
-    """A key to sort names by as people do: 2 before 10."""
-    return [(int(part), '') if n % 2 else (-1, part) for n, part in enumerate(re.split('([0-9]+)', name))], name
+    """A key to sort names by as people do: 2 before 10, and b before C."""
+    return [(int(part), '') if n % 2 else (-1, part) for n, part in enumerate(re.split('([0-9]+)', name.lower()))], name
 
 
 def stamp(path: str) -> str:

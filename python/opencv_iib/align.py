@@ -109,7 +109,7 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     :param crop: write what all that are aligned show, instead of what the reference shows.
     :param interpolation: one of INTERPOLATIONS.
     :param workers: threads; None for one a core.
-    :return: of each image but the reference.
+    :return: of each image but the reference, 2 before 10 and b before C.
     :raises ValueError: for a reference that is no image or too large, no image beside it, or with `crop` none that all show a part of.
     :raises FileExistsError: for a folder with other files, or with an image to be aligned.
     """
@@ -118,10 +118,11 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     options.check()
     crew, masks = Threads(thread_count(workers)), Masks(options.mask)
     check_images(reference)
+    check_folder(out, (reference,))
     paths = [path for path in _expanded(images, out) if not is_same(path, reference)]
     if not paths:
         raise ValueError(f'no image to align but the reference, {reference}')
-    check_folder(out, (reference, *paths, *masks.check([os.path.basename(path) for path in (reference, *paths)])))
+    check_folder(out, (*paths, *masks.check([os.path.basename(path) for path in (reference, *paths)])))
     work = _Work(reference, options, masks)
     settings = [*options, os.path.abspath(reference), work.stamp(reference), __version__]
     stamps = {path: work.stamp(path) for path in paths}
@@ -166,24 +167,30 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
 
 
 def _expanded(images: Sequence[Path], out: str) -> list[str]:
-    """Files of names, folders and patterns, each once. Those that earlier calls have written below such a folder are left out.
+    """Files of names, folders and patterns, each once, in_order. Those in `out` that a folder or a pattern has are left out: earlier calls have
+    written them.
 
     :raises MissingFile: for a name or a pattern that nothing has.
+    :raises TakenFile: if there are no others.
     """
-    paths: dict[str, None] = {}
+    paths: dict[str, bool] = {}  # and whether they are left out
     for image in sequence(images, 'images', 'paths'):
         given = os.fspath(image)
-        found = [given]
         if os.path.isdir(given):
-            found = [path for path in (os.path.join(given, name) for name in find_images(given)) if not is_in(path, out)]
+            found = [os.path.join(given, name) for name in find_images(given)]
         elif not os.path.lexists(given) and glob.escape(given) != given:
-            found = sorted(glob.glob(given, recursive=True), key=in_order)
+            found = [path for path in glob.glob(given, recursive=True) if not os.path.isdir(path)]
             if not found:
                 raise MissingFile(f'no image is called {given}')
         else:
             check_images(given)
-        paths.update(dict.fromkeys(found))
-    return list(paths)
+            paths[given] = False
+            continue
+        for path in found:
+            paths.setdefault(path, is_in(path, out))
+    if all(paths.values()):
+        check_folder(out, paths)
+    return sorted((path for path, left_out in paths.items() if not left_out), key=in_order)
 
 
 def _known(out: str, settings: list[Any], stamps: dict[str, str]) -> tuple[dict[str, Aligned], Optional[list[int]]]:
