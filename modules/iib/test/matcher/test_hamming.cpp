@@ -92,12 +92,12 @@ TEST(IIB_Hamming, last_level_begins_with_every_fourth_word)
     EXPECT_EQ((std::vector<unsigned>{0, 0, ~0u, 0, 0, 0, 0, 0, 0}), plain);
 }
 
-// The whole kernel against a loop over bits: every number of words, more than fit a vector of bytes included, queries
+// The whole kernel against a loop over bits: every number of words, more than add up in bytes and in 16 bits included, queries
 // that do and do not fill a tile, one block and several, the last one full or not; bounds that about half the pairs are
 // within, and that hardly any is.
 TEST(IIB_Hamming, scan_as_the_naive_loop)
 {
-    for (int bytes : {1, 4, 5, 12, 31, 32, 64, 68, 170, 248, 252, 256, 260, 682, 1000})
+    for (int bytes : {1, 4, 5, 12, 31, 32, 64, 68, 170, 248, 252, 256, 260, 682, 1000, 8200})
         for (int queryCount : {1, 2, 3, 4, 5, 8, 9})
             for (int below : {bytes * 4, bytes * 2})
                 for (bool bothDirections : {false, true})

@@ -109,7 +109,7 @@ private:
 template <int Q> class Tile
 {
 public:
-    static constexpr int SIZE = Q * VECTORS, PAIRS = (Q + 1) / 2;
+    static constexpr int SIZE = Q * VECTORS, PAIRS = (Q + 1) / 2, WIDE = POSITIONS > 1 ? 1 : 2;
 
     //! Compares words 0 to `to`.
     CV_ALWAYS_INLINE void start(const TileQueries& queries, const unsigned* block, int to)
@@ -122,7 +122,26 @@ public:
     //! Compares words `from` to `to`.
     CV_ALWAYS_INLINE void advance(const TileQueries& queries, const unsigned* block, int from, int to)
     {
+        for (; to - from > WIDEST; from += WIDEST)
+            addUp(queries, block, from, from + WIDEST);
+        addUp(queries, block, from, to);
+    }
+
+    CV_ALWAYS_INLINE void distances(Counts* result) const
+    {
+        for (int i = 0; i < SIZE; i++)
+            result[i] = counts[i];
+    }
+
+private:
+    static constexpr int WIDEST = 2000;  // words that add up in 16 bits: 2047 times 32 at most
+
+    CV_ALWAYS_INLINE void addUp(const TileQueries& queries, const unsigned* block, int from, int to)
+    {
         const int MOST = 30;  // vectors that add up in bytes: 31 times 8 at most
+        v_uint16 wide[Q * WIDE];
+        for (int i = 0; i < Q * WIDE; i++)
+            wide[i] = vx_setzero_u16();
         int v = from * 4 / POSITIONS;
         for (const int end = to * 4 / POSITIONS; v < end;)
         {
@@ -140,20 +159,16 @@ public:
                 addUp<1>(low, high, queries, block, v);
             for (int pair = 0; pair < PAIRS; pair++)
             {
-                widen(low[pair], counts + 2 * pair * VECTORS);
+                widen(low[pair], wide + 2 * pair * WIDE);
                 if (2 * pair + 1 < Q)
-                    widen(highSums(low[pair], high[pair]), counts + (2 * pair + 1) * VECTORS);
+                    widen(highSums(low[pair], high[pair]), wide + (2 * pair + 1) * WIDE);
             }
         }
+        for (int q = 0; q < Q; q++)
+            for (int k = 0; k < WIDE; k++)
+                addWide(wide[q * WIDE + k], counts + q * VECTORS + k * VECTORS / 2);
     }
 
-    CV_ALWAYS_INLINE void distances(Counts* result) const
-    {
-        for (int i = 0; i < SIZE; i++)
-            result[i] = counts[i];
-    }
-
-private:
     // A sum of N distances has to fit half a byte: a distance is 4 at most, so N is 3 at most.
     template <int N>
     static CV_ALWAYS_INLINE void addUp(
@@ -188,18 +203,14 @@ private:
     }
 
     // The positions of a vector come together.
-    static CV_ALWAYS_INLINE void widen(const Bytes& sums, Counts* counts)
+    static CV_ALWAYS_INLINE void widen(const Bytes& sums, v_uint16* wide)
     {
         v_uint16 a, b;
         v_expand(sums, a, b);
         // A vector holds the 16 codes POSITIONS times, one after the other: its halves, or quarters, are added.
-        if (POSITIONS > 1)
-            addWide(a + b, counts);
-        else
-        {
-            addWide(a, counts);
-            addWide(b, counts + VECTORS / 2);
-        }
+        wide[0] = wide[0] + (WIDE > 1 ? a : a + b);
+        if (WIDE > 1)
+            wide[WIDE - 1] = wide[WIDE - 1] + b;
     }
 
     static CV_ALWAYS_INLINE void addWide(const v_uint16& sums, Counts* counts)
