@@ -184,11 +184,13 @@ def _scaled(image: np.ndarray) -> np.ndarray:
     """Other numbers scaled from their own range, of which a few dead pixels are no part; NaN becomes 0."""
     if image.dtype == np.uint8:
         return image
+    if image.dtype.kind == 'f':
+        image = image / 2  # so that no difference is beyond the largest number
     colours = image[..., :3] if image.ndim == 3 else image
     values = colours[np.isfinite(colours)]
     if not values.size:
         raise ValueError('the image holds no finite number')
-    with np.errstate(invalid='ignore', over='ignore'):  # floats of 32 bits have no number for what lies between their largest ones
+    with np.errstate(invalid='ignore', over='ignore'):  # of infinity, and of limits beyond the largest number
         low, high = map(float, np.percentile(values[::1 + values.size // 1000000], (.01, 99.99)))
         if high > low:
             values = values[(values >= 2 * low - high) & (values <= 2 * high - low)]

@@ -80,6 +80,10 @@ class Files(Collection):
                 np.testing.assert_array_equal(np.delete(read_grey(file), 5, 0), np.delete(grey, 5, 0))
                 if values[0] == 3e38:
                     np.testing.assert_array_equal(in_8_bits(wide, False), np.where(grey < 99, 255, 0))
+        ramp = np.linspace(-1, 1, 256).reshape(16, 16)
+        for kind in (np.float32, float):
+            for size in (1, 3e38, np.finfo(kind).max):
+                np.testing.assert_array_equal(in_8_bits((ramp * size).astype(kind), False).ravel(), np.arange(256))
         file.write_bytes(encoded(np.full((40, 40), np.nan, np.float32), '.tif'))
         with self.assertRaisesRegex(ValueError, 'other: the image holds no finite number'):
             read_colour(file)
