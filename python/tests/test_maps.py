@@ -168,6 +168,22 @@ class Maps(OnWall):
         self.check_error('letter.txt', *arguments, foreign, '--force')
         self.check_error('holds letter.txt', 'localize', '--map', self.map, '--images', self.dark, '--out', foreign)
 
+    def test_a_map_is_not_replaced_by_one_that_leaves_images_out(self):
+        out, images, empty = self.path('map'), self.path('images'), self.path('empty')
+        shutil.copytree(self.map, out)
+        shutil.copytree(self.images, images)
+        os.unlink(os.path.join(images, '0.png'))
+        before = Path(out, 'map.iib').read_bytes()
+        arguments = 'map', '--model', self.model, '--images', images, '--points', '300', '--out'
+        self.check_error('0.png: there is no such file: left out of the map, so that of .*map is not replaced', *arguments, out, '--force')
+        self.assertEqual(Path(out, 'map.iib').read_bytes(), before)
+        self.assertEqual(run_command(*arguments, self.path('new'))[0], 4)
+        os.makedirs(empty)
+        for more in ((), ('--force',)):
+            self.check_mistake("empty has none of the model's 6 images that can be read, such as 0.png: there is no such file", 'map', '--model', self.model,
+                               '--images', empty, '--out', self.path('none'), *more)
+        self.assertFalse(os.path.exists(self.path('none')))
+
     def test_an_update_replaces_another_map_by_force_alone(self):
         other = self.path('other')
         shutil.copytree(self.map, other)

@@ -14,7 +14,7 @@ from opencv_iib._arguments import InvalidOption, Path, integer
 from opencv_iib._arrays import as_mask
 from opencv_iib._exif import exif_orientation
 from opencv_iib._files import check_folder, check_is_folder, read_bytes
-from opencv_iib._images import Masks, decode_grey
+from opencv_iib._images import Masks, decode_grey, in_order
 from opencv_iib._parallel import thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
@@ -49,7 +49,7 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     :param out: folder of the map.
     :param points: at most so many keypoints an image.
     :param workers: threads; None for one a core.
-    :param force: replace a map that is there. Who reads it meanwhile gets the old one or the new one.
+    :param force: replace a map that is there, if no image is left out. Who reads it meanwhile gets the old one or the new one.
     :param log: told of each image that is missing, cannot be read or is of another size than its camera; the map is made without it.
     :param lines: look for straight edges too, see Localizer.
     :param orb_and_akaze: the paper's points and descriptor in place of the recommended ones; images are then looked for by them.
@@ -57,8 +57,8 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     :param mask: what is described, as of Masks.
     :param max_size: pixels of the longer side to which larger images are reduced to find and describe points; 0: they are not.
     :return: counts of images, points, and images that were left out.
-    :raises InvalidOption: for no points, or more than an image can have.
-    :raises FileExistsError: if there is a map and force is not set.
+    :raises InvalidOption: for no points, or more than an image can have, and if no image can be read.
+    :raises FileExistsError: if there is a map and force is not set, or images are left out.
     :raises FileNotFoundError: for a folder that is not there.
     :raises opencv_iib.error: for a model that is damaged or not that of the images, and for a folder that holds other files.
     """
@@ -73,16 +73,21 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     stop = threading.Event()
     progress: Optional[Progress] = None
 
-    masks, left_out = Masks(mask), 0
+    masks, left_out, is_there = Masks(mask), 0, os.path.exists(os.path.join(target, 'map.iib'))
+    untold: list[str] = []  # of images that are left out, until one is read
+    read_any = False
     reasons: dict[bytes, bytes] = {}  # why images cannot be read, by what is said of them there
 
     def read(name: bytes) -> tuple[NDArray[np.uint8], int, NDArray[np.uint8]]:
+        nonlocal read_any
         if stop.is_set():
             raise KeyboardInterrupt
         try:
             data = read_bytes(os.path.join(images, os.fsdecode(name)))
             image = decode_grey(data)
-            return image, exif_orientation(data) if exif else 1, as_mask(masks.of(os.fsdecode(name), image))
+            found = image, exif_orientation(data) if exif else 1, as_mask(masks.of(os.fsdecode(name), image))
+            read_any = True
+            return found
         except (ValueError, OSError) as e:
             reasons[name + UNREAD] = name + f': {getattr(e, "strerror", None) or e}{LEFT_OUT}'.encode(errors='surrogateescape')
             return as_mask(None), 1, as_mask(None)
@@ -93,7 +98,11 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
             raise KeyboardInterrupt
         if problem:
             left_out += 1
-            log(reasons.get(problem, problem).decode(errors='backslashreplace'))
+            untold.append(reasons.get(problem, problem).decode(errors='backslashreplace'))
+            if is_there:
+                raise FileExistsError(f'{untold.pop()}, so that of {os.fspath(out)} is not replaced: choose another folder')
+        while read_any and untold:
+            log(untold.pop(0))
         progress = progress or Progress('mapping', total)
         progress.step(done - progress.done)
 
@@ -101,6 +110,11 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
         try:
             _core.setNumThreads(used)
             pool.submit(_core.buildMap, os.fspath(model), read, target, points, lines, orb_and_akaze, max_size, report).result()
+        except _core.error:
+            if untold:
+                why = min(untold, key=in_order)[:-len(LEFT_OUT)]
+                raise InvalidOption(f"{os.fspath(images)} has none of the model's {left_out} images that can be read, such as {why}") from None
+            raise
         finally:
             stop.set()
             _core.setNumThreads(threads)
