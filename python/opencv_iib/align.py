@@ -109,7 +109,7 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     :param crop: write what all that are aligned show, instead of what the reference shows.
     :param interpolation: one of INTERPOLATIONS.
     :param workers: threads; None for one a core.
-    :return: of each image but the reference, 2 before 10 and b before C.
+    :return: of each image but the reference, in the order of `images`; the table and the page have 2 before 10 and b before C.
     :raises ValueError: for a reference that is no image or too large, no image beside it, or with `crop` none that all show a part of.
     :raises FileExistsError: for a folder with other files, or with an image to be aligned.
     """
@@ -167,8 +167,8 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
 
 
 def _expanded(images: Sequence[Path], out: str) -> list[str]:
-    """Files of names, folders and patterns, each once, in_order. Those in `out` that a folder or a pattern has are left out: earlier calls have
-    written them.
+    """Files of names, folders and patterns, each once, those of a folder or a pattern in_order. Of these, those in `out` are left out: earlier
+    calls have written them.
 
     :raises MissingFile: for a name or a pattern that nothing has.
     :raises TakenFile: if there are no others.
@@ -186,11 +186,11 @@ def _expanded(images: Sequence[Path], out: str) -> list[str]:
             check_images(given)
             paths[given] = False
             continue
-        for path in found:
+        for path in sorted(found, key=in_order):
             paths.setdefault(path, is_in(path, out))
     if all(paths.values()):
         check_folder(out, paths)
-    return sorted((path for path, left_out in paths.items() if not left_out), key=in_order)
+    return [path for path, left_out in paths.items() if not left_out]
 
 
 def _known(out: str, settings: list[Any], stamps: dict[str, str]) -> tuple[dict[str, Aligned], Optional[list[int]]]:
@@ -243,13 +243,13 @@ def _common(whole: list[int], images: Iterable[Aligned]) -> list[int]:
 
 def _write_tables(folder: str, reference: str, title: str, done: Sequence[Aligned], part: list[int]) -> None:
     """The table and the page."""
+    ordered = sorted(done, key=lambda each: in_order(each.name))
     with _file(os.path.join(folder, 'transforms.csv')) as table:
-        csv.writer(table).writerows([HEADER, *map(_row, done)])
+        csv.writer(table).writerows([HEADER, *map(_row, ordered)])
 
     def shown(file: str) -> str:
         view = f'{VIEWS}/{file}.jpg'
         return quote(view if os.path.exists(os.path.join(folder, view)) else file)
-    ordered = sorted(done, key=lambda each: in_order(each.name))
     width, height = part[2:]
     figures = (FIGURE.format(reference=shown(reference), file=shown(each.file), name=html.escape(each.name), verdict=each, width=width, height=height)
                if each.file else f'<p>{html.escape(each.name)}: {html.escape(each.verdict)}</p>' for each in ordered)
