@@ -45,7 +45,9 @@ alt="{name}, aligned" loading="lazy" width="{width}" height="{height}"></div>
 <input type="range" value="50" aria-label="border between the reference, left, and {name}">
 <figcaption>{name}: {verdict}</figcaption></figure>'''
 INTERPOLATIONS = ('NEAREST', 'LINEAR', 'CUBIC', 'LANCZOS4')  #: of cv2, by their names there
-STATE, VIEWS, TABLES = 'align.json', 'views', ('transforms.csv', 'index.html', 'align.json')  #: what a later call goes on from; pictures that browsers show, of those that they do not
+STATE = 'align.json'  #: what a later call goes on from
+VIEWS = 'views'  #: pictures that browsers show, of those that they do not
+TABLES = 'transforms.csv', 'index.html', STATE
 WARPED = tuple(map(np.dtype, ('u1', 'u2', 'i2', 'f4', 'f8')))  #: what cv2.warpPerspective takes
 LARGEST_SIDE = 32766  #: pixels that cv2.warpPerspective takes
 TOLD_ROTATION = 15  #: degrees: upright descriptors match images that are turned by less

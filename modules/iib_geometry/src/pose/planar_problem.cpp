@@ -6,8 +6,8 @@
 namespace cv::iib {
 namespace {
 
-const int STRIDE =
-        16;  // matches between two looks at the limit; the product of what they lose is no larger than 1e16
+//! Matches between two looks at the limit; the product of what they lose is no larger than 1e16.
+const int STRIDE = 16;
 
 //! The sign of the determinant of the derivatives by a point before the horizon is that of det T.
 bool mirrors(const Matx33d& T) { return !(determinant(T) > 0); }
