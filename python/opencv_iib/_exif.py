@@ -11,6 +11,7 @@ from opencv_iib._files import read_bytes
 
 # Numbers of TIFF's and EXIF's tags.
 SAMPLES, ORIENTATION, NO_DATA = 0x0115, 0x0112, 0xA481  # the last one is GDAL's
+SUBFILE, REDUCED, MASK = 0x00FE, 1, 4  # which kind of page it is, and two of its bits
 EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x8769, 0x920A, 0xA405, 0xA20E, 0xA210
 MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolution
 NOWHERE = 2**32 - 1  #: of a directory: behind the end of any file
@@ -112,16 +113,21 @@ def _number(entries: dict[int, Any], tag: int, default: float) -> float:
 
 
 def pages_of_tiff(data: bytes) -> tuple[list[int], int]:
-    """Where their directories begin, and channels of the first; none and 1 for other files, and for the 64-bit kind."""
-    places: dict[int, None] = {}
+    """Where their directories begin, and channels of the first; none and 1 for other files, and for the 64-bit kind. What a page after the
+    first says is reduced or a mask is left out."""
+    places, seen = [], set()
     samples = 1
     with contextlib.suppress(struct.error):
         at = struct.unpack_from(_order(data) + 'I', data, 4)[0] if data[:4] in TIFF[:2] else 0
-        while at and at not in places:
-            places[at] = None  # also of one that is cut off
+        while at and at not in seen:
+            seen.add(at)
+            places.append(at)  # also of one that is cut off
             entries, at = _directory(data, at)
-            samples = samples if len(places) > 1 else int(_number(entries, SAMPLES, 1))
-    return list(places), samples
+            if len(places) == 1:
+                samples = int(_number(entries, SAMPLES, 1))
+            elif int(_number(entries, SUBFILE, 0)) & (REDUCED | MASK):
+                places.pop()
+    return places, samples
 
 
 def begin_at(tiff: bytearray, place: int) -> None:

@@ -88,6 +88,17 @@ class Files(Collection):
         with self.assertRaisesRegex(ValueError, 'other: the image holds no finite number'):
             read_colour(file)
 
+    def test_masks_and_reduced_pages_are_no_pages(self):
+        path, page = self.folder / 'masked.tif', texture(60, 40)
+        write_picture(path, page, page)
+        data = bytearray(path.read_bytes())
+        at = pages_of_tiff(data)[0][1]
+        entries = {struct.unpack_from('<H', data, at + 2 + 12 * k)[0]: at + 2 + 12 * k for k in range(struct.unpack_from('<H', data, at)[0])}
+        struct.pack_into('<H', data, entries[0x0106] + 8, 4)  # a mask's pixels, which cv2 does not read
+        for kind in (1, 4, 5):
+            struct.pack_into('<HHII', data, entries[0x0153], 0x00FE, 4, 1, kind)  # in place of the kind of numbers
+            np.testing.assert_array_equal(decode_pages(bytes(data)), [page])
+
     def test_pages_are_read_without_a_file(self):
         path = self.folder / 'pages.tif'
         for pages in ([texture(60, 40, seed=seed) for seed in (1, 2, 3)], [np.dstack([texture(60, 40, np.uint16, seed)] * 3) for seed in (4, 5)]):
