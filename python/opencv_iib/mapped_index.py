@@ -101,7 +101,7 @@ class MappedIndex(CoreObject):
         :raises opencv_iib.error: also for a k of more than there are codes that would fill the memory.
         """
         queries, k, where = as_codes(queryDescriptors, 'queries'), integer(k, 'k'), -1 if segment is None else integer(segment, 'segment')
-        check_padding(len(queries), k, self.rows())
+        check_padding(len(queries), k, self.rows)
         parts = [self._core.search(queries[first:first + AT_ONCE], k, where) for first in range(0, max(1, len(queries)), AT_ONCE)]
         rows, distances = (np.concatenate(arrays).reshape(-1, k) for arrays in zip(*parts))
         return rows, distances

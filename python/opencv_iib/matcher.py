@@ -1,7 +1,7 @@
 """HierarchicalMatcher: the class of cv2.iib, on arrays."""
 from __future__ import annotations
 
-from typing import Any, Iterable, Iterator, Optional, Sequence
+from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,11 +20,11 @@ AT_ONCE = 512  # queries: with a million codes, less than a second on one core
 MAX_PADDED = 1 << 26  # neighbours that are answered with -1 where there are fewer
 
 
-def check_padding(queries: int, k: int, rows: int) -> None:
+def check_padding(queries: int, k: int, rows: Callable[[], int]) -> None:
     """:raises opencv_iib.error: as the C++ library, which sees a part of the queries alone, for a k of more than there are codes that would
     fill the memory."""
-    if k > rows and queries * k > MAX_PADDED:
-        raise _core.error(f'k is {k}, but there are {rows} descriptors to find: ask for at most {max(rows, MAX_PADDED // queries)} for each '
+    if queries * k > MAX_PADDED and k > (there := rows()):  # counted last, since a matcher unpacks its codes for it
+        raise _core.error(f'k is {k}, but there are {there} descriptors to find: ask for at most {max(there, MAX_PADDED // queries)} for each '
                           f'of {queries} queries')
 
 
@@ -125,6 +125,7 @@ class HierarchicalMatcher(CoreObject):
         queries, distance = as_codes(queryDescriptors, 'descriptors'), number(maxDistance, 'maxDistance')
         if not distance > 0:
             raise _core.error(f'maxDistance is {distance:g}: it must be more than 0')
+        distance = max(distance, .5)  # both are equal codes alone, and OpenCV refuses what is next to nothing
         matcher, matches = self._on(trainDescriptors), []
         for first, some, allowed in self._parts(queries, _masks(mask if masks is None else masks)):
             found = matcher.radiusMatch(some, distance, allowed)
@@ -139,7 +140,7 @@ class HierarchicalMatcher(CoreObject):
             number of the image as well.
         """
         queries, k, matcher = as_codes(queryDescriptors, 'descriptors'), integer(k, 'k'), self._on(trainDescriptors)
-        check_padding(len(queries), k, matcher.rows())
+        check_padding(len(queries), k, matcher.rows)
         parts = [matcher.knnMatchArrays(some, k, allowed)
                  for _, some, allowed in self._parts(queries, _masks(mask if masks is None else masks))]
         found = tuple(np.concatenate(arrays) for arrays in zip(*parts)) if len(parts) > 1 else parts[0]

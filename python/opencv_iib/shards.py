@@ -128,7 +128,7 @@ def search(folder: Path, queries: Any, k: int = 5, client: Any = None) -> Arrays
     k, rows = integer(k, 'k'), index.rows()
     if client is None or index.segments() == 0 or k < 1:
         return index.search(queries, k)
-    check_padding(len(queries), k, rows)
+    check_padding(len(queries), k, lambda: rows)
     wanted, k = k, max(min(k, rows), 1)
     search_shard = functools.partial(_search_shard, os.path.abspath(os.fspath(folder)), index.version(), queries, k)
     best = np.full((len(queries), k), -1), np.full((len(queries), k), -1, np.int32)
