@@ -64,12 +64,12 @@ class Aligned(NamedTuple):
     transform: Sequence[float] = ()  #: 3 x 3, row by row: from its pixels to those of the reference
     file: str = ''  #: as the reference's camera would see it
     size: Sequence[int] = ()  #: its width and height; none if it cannot be read
-    rotation: float = 0  #: degrees by which it is turned against the reference, clockwise, beside what EXIF tells
+    rotation: float = 0  #: degrees, 0 or more and below 360, by which it is turned against the reference, clockwise, beside what EXIF tells
 
     def __str__(self) -> str:
         if not self.file:
             return self.verdict
-        turned = f', turned by {self.rotation % 360:.0f} degrees clockwise' if abs(self.rotation) > TOLD_ROTATION else ''
+        turned = f', turned by {self.rotation:.0f} degrees clockwise' if TOLD_ROTATION < self.rotation < 360 - TOLD_ROTATION else ''
         return f'{self.matches} matches agree, its corners are known to {max(self.errors):.2f} pixels{turned}'
 
 
@@ -405,10 +405,10 @@ class _Work:
 
 
 def _rotation(transform: NDArray[np.float64], shape: Sequence[int]) -> float:
-    """Degrees by which an image is turned against the reference, clockwise, at its middle."""
+    """Degrees by which an image is turned against the reference, clockwise, at its middle; 0 or more and below 360."""
     middle, right = (transform @ (shape[1] / 2 + x, shape[0] / 2, 1) for x in (0, 1))
     x, y = right[:2] / right[2] - middle[:2] / middle[2]
-    return float(np.degrees(np.arctan2(-y, x)))
+    return float(np.degrees(np.arctan2(-y, x))) % 360
 
 
 def _row(each: Aligned) -> list[str]:

@@ -9,10 +9,7 @@ import subprocess
 import sys
 import unittest
 from contextlib import redirect_stdout
-from pathlib import Path
 from unittest import mock
-
-import numpy as np
 
 from opencv_iib import _streams
 from opencv_iib.__main__ import _parser
