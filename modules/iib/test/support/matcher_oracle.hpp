@@ -38,7 +38,7 @@ private:
     void keepAdaptive(const Mat& queries, Matches& candidates);
 };
 
-//! The k nearest, or for k = 0 all within a radius, as the library searches for them in blocks of these sizes: among
+//! The k nearest, or for k = 0 all within a radius, as the library searches for them in chunks of these sizes: among
 //! the oracle's images, with its masks and by its rules.
 Matches searched(const MatcherOracle& oracle, const Mat& queries, int k, int radius, const ScanChunk& chunk,
         SearchCost& cost);
