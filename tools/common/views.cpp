@@ -95,7 +95,7 @@ ViewPair pairOf(
 {
     const cv::Matx33d toTarget = b.rotation.t();
     return {set, to.name, a.name + "-" + b.name, a.file, b.file, from.camera, to.camera,
-            toTarget * a.rotation, toTarget * (a.position - b.position), &from == &to};
+            toTarget * a.rotation, toTarget * (a.position - b.position), &from == &to, 0, 0};
 }
 
 void addWithin(const std::string& set, const ViewFolder& folder, std::vector<ViewPair>& pairs)

@@ -43,6 +43,7 @@ struct ViewPair
     cv::Matx33d rotation;                       //!< from the reference's axes to the target's
     cv::Vec3d translation;                      //!< of the same, its length unknown to the methods under test
     bool sameLight;                             //!< whether both images are of one folder
+    int referenceTurns, targetTurns;            //!< quarters clockwise that an image was taken turned by
 };
 
 //! Whether a folder holds `cameras.txt`, `poses.txt` and `images`.

@@ -2,6 +2,7 @@
 
 #include "common/dataset.hpp"
 #include "common/metrics.hpp"
+#include "common/pair_list.hpp"
 #include "common/views.hpp"
 #include "described_images.hpp"
 #include "experiments.hpp"
@@ -88,6 +89,18 @@ std::vector<Detector> describedByTwo(Options options)
     return all;
 }
 
+//! Of the lists, whose images are below the first root, or what the roots hold.
+std::vector<ViewPair> viewPairs(const Options& options)
+{
+    if (options.pairs.empty())
+        return findViewPairs(options.roots);
+    std::vector<ViewPair> all;
+    for (const std::string& list : options.pairs)
+        for (const ViewPair& pair : readPairList(list, options.roots.front()))
+            all.push_back(pair);
+    return all;
+}
+
 }  // namespace
 
 int estimators(const Options& options, const std::vector<ImagePair>&)
@@ -126,23 +139,25 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
     DescribedImages described;
     std::vector<Task> tasks;
     const std::vector<Detector> all = describedByTwo(options);
-    const std::vector<LitPair> pairs = withRelit(findViewPairs(options.roots));
+    const std::vector<LitPair> pairs = withRelit(viewPairs(options));
     for (const LitPair& pair : pairs)
     {
-        const ViewPair& views = pair.views;
         std::vector<Detector> missing;
         for (const Detector& d : all)
-            if (!errors.has({views.set, views.sequence, views.target, d.name, UNIVERSAL, "propagated", LAST}))
+            if (!errors.has({pair.views.set, pair.views.sequence, pair.views.target, d.name, UNIVERSAL,
+                        "propagated", LAST}))
                 missing.push_back(d);
         const auto run = [&, missing] {
-            const cv::Mat reference = readImage(views.referenceFile, cv::IMREAD_GRAYSCALE);
-            cv::Mat target = readImage(views.targetFile, cv::IMREAD_GRAYSCALE);
+            ViewPair views = pair.views;
+            cv::Mat reference = readImage(views.referenceFile, cv::IMREAD_GRAYSCALE),
+                    target = readImage(views.targetFile, cv::IMREAD_GRAYSCALE);
             std::string name = views.targetFile;
             if (pair.light >= 0)
             {
                 target = relit(target, pair.light);
                 name += std::to_string(pair.light);
             }
+            turnUpright(views, reference, target);
             for (const Detector& detector : missing)
             {
                 const DescribedImages::Result r = described.get(detector, reference, views.referenceFile),
@@ -152,7 +167,7 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
             }
         };
         if (!missing.empty())
-            tasks.push_back({views.set + "/" + views.sequence + "/" + views.target, run});
+            tasks.push_back({pair.views.set + "/" + pair.views.sequence + "/" + pair.views.target, run});
     }
     const int skipped = runTasks("estimators", tasks, &errors);
     matched.finish();

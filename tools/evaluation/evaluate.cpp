@@ -66,8 +66,9 @@ int evaluate(const Options& options)
         if (std::none_of(std::begin(EXPERIMENTS), std::end(EXPERIMENTS),
                     [&](const Experiment& e) { return name == e.name; }))
             CV_Error(cv::Error::StsBadArg, "unknown experiment " + name);
-    const std::vector<ImagePair> pairs = findPairs(options.roots);
-    if (pairs.empty() && findViewPairs(options.roots).empty())
+    const bool listed = !options.pairs.empty();
+    const std::vector<ImagePair> pairs = listed ? std::vector<ImagePair>() : findPairs(options.roots);
+    if (!listed && pairs.empty() && findViewPairs(options.roots).empty())
         CV_Error(cv::Error::StsObjectNotFound,
                 "no image sequences found; the README of tools/evaluation tells the layouts");
     cv::utils::fs::createDirectories(options.out);

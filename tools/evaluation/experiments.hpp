@@ -18,6 +18,7 @@ struct Options
     std::vector<std::string> saved;        //!< files of saved IIB extractors to compare
     std::vector<std::string> detectors;    //!< of OpenCV's; empty: all
     std::vector<std::string> keypoints;    //!< folders of other detectors' keypoints
+    std::vector<std::string> pairs;        //!< lists of pairs below the roots, for `estimators` alone
     std::vector<std::string> compare;      //!< pairs of images to list the matches of several descriptors of
 };
 
@@ -26,7 +27,7 @@ struct Options
 int fixedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 //! Of pairs whose light changes, as the paper's.
 int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs);
-//! Poses of the views below the roots (common/views.hpp) from plain and refined matches by several estimators;
+//! Poses of the views below the roots (common/views.hpp), or of Options::pairs, from plain and refined matches by several estimators;
 //! `<out>/matched_points.csv` holds the matches for others.
 int estimators(const Options& options, const std::vector<ImagePair>& pairs);
 //! alignImages on pairs whose light changes, the second image moved by a homography, and on images of different scenes.

@@ -68,7 +68,7 @@ def estimates(tables):
     found = {place: [] for place in ("other light", "same light", "chosen on")}
     for (place, detector, descriptor, points), rows in group(tables["estimators"], "place", "detector", "descriptor", "points").items():
         method = descriptors.POSES.get((detector, descriptor), "%s, %s" % (detector, descriptor))
-        found[place].append((method, points, by(rows, "estimator")))
+        found.setdefault(place, []).append((method, points, by(rows, "estimator")))
     for lines in found.values():
         lines.sort(key=lambda line: line[0] != "recommended chain")
     bars = [(method, line["findRelativePose"]) for method, points, line in found["other light"] if points == "propagated"]

@@ -52,9 +52,11 @@ def curve_places(row):
 
 
 def light_place(row):
-    """Poses of views in one light, or in two: those that nothing was chosen on are judged by themselves."""
+    """Poses of views in one light, or in two, or of a list: those that nothing was chosen on are judged by themselves."""
     if row['set'] == 'strecha':
         return ['same light']
+    if row['set'].startswith('list '):  # of pairs, by others
+        return [row['set']]
     seed = re.fullmatch('[a-z]+_([0-9]+)', row['set'])
     chosen = row['set'] in CHOSEN_ON or seed and seed[1] in CHOSEN_SEEDS
     return [] if row['set'] in TRAINED_ON else ['chosen on' if chosen else 'other light']
@@ -123,7 +125,7 @@ PLANS = {
                        columns('precision', 'recall')),
     'alignment.csv': (alignment_place, ('model',), {'found': column('found'), 'squares': column('squares'), 'within_1': within(1), 'within_3': within(3)}),
     'estimators.csv': (light_place, ('detector', 'descriptor', 'points', 'estimator'),
-                       {'inliers': column('inliers'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
+                       {'inliers': column('inliers'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_20': pose_area(20), 'at_5': pose_area(5)}),
     'poses_by_time.csv': (light_place, ('detector', 'points', 'matches', 'estimator'),
                           {'milliseconds': column('milliseconds'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
 }

@@ -50,15 +50,15 @@ cv::Mat rendered(const Camera& camera, double brightness)
     return image;
 }
 
-//! Errors of AKAZE's and UNIVERSAL's matches, plain, refined and propagated, by all estimators, in the same light and in another.
-std::map<std::string, double> errorsOfPoses(const Options& options)
+//! Errors of AKAZE's and UNIVERSAL's matches, plain, refined and propagated, by all estimators, in each of so many lights.
+std::map<std::string, double> errorsOfPoses(const Options& options, size_t lights = 2)
 {
     std::map<std::string, double> found;
     for (const Fields& row :
             readRows(options.out + "/estimators.csv", {"set", "sequence", "target", "detector", "descriptor",
                                                               "points", "estimator", "error", "inliers"}))
         found[row[0] + " " + row[4] + " " + row[5] + " " + row[6]] = std::atof(row[7].c_str());
-    EXPECT_EQ(36u, found.size());
+    EXPECT_EQ(18 * lights, found.size());
     return found;
 }
 
@@ -104,6 +104,39 @@ TEST(Estimators, pose_of_two_views)
     EXPECT_EQ(0, evaluate(options));
     for (const auto& error : errorsOfPoses(options))
         EXPECT_EQ(HUGE_VAL, error.second) << error.first;
+}
+
+//! The second camera was turned by a quarter clockwise.
+TEST(Estimators, pairs_of_a_list)
+{
+    const TestFolder folder;
+    Options options;
+    options.out = folder.path("results");
+    options.roots = {folder.path("")};
+    options.pairs = {folder.path("pairs.txt")};
+    options.experiments = {"estimators"};
+    options.detectors = {"AKAZE"};
+    options.points = 600;
+    const Camera first = {cv::Matx33d::eye(), cv::Vec3d()};
+    Camera second = {cv::Matx33d(), cv::Vec3d(0.9, 0.1, 0)};
+    cv::Rodrigues(cv::Vec3d(0.02, 0.08, 0), second.rotation);
+    cv::Mat turned;
+    cv::rotate(rendered(second, 0.6), turned, cv::ROTATE_90_CLOCKWISE);
+    cv::imwrite(folder.path("a.png"), rendered(first, 0.9));
+    cv::imwrite(folder.path("b.png"), turned);
+    const cv::Matx33d R = cv::Matx33d(0, -1, 0, 1, 0, 0, 0, 0, 1) * second.rotation;
+    const cv::Vec3d t = -(R * second.position);
+    std::string numbers = "400 0 240 0 400 180 0 0 1 400 0 179 0 400 240 0 0 1 ";
+    for (int row = 0; row < 3; row++)
+        numbers += cv::format("%.6f %.6f %.6f %.6f ", R(row, 0), R(row, 1), R(row, 2), t[row]);
+    folder.write(
+            "pairs.txt", "a.png b.png 0 1 " + numbers + "0 0 0 1\nno.png b.png 0 1 " + numbers + "0 0 0 1\n");
+    EXPECT_EQ(1, evaluate(options));  // a file that is not there
+    for (const auto& error : errorsOfPoses(options, 1))
+    {
+        EXPECT_EQ(0u, error.first.find("list pairs.txt ")) << error.first;
+        EXPECT_LT(error.second, error.first.find("find") != std::string::npos ? 4 : 10) << error.first;
+    }
 }
 
 TEST(DescribedImages, the_last_ones_are_kept)

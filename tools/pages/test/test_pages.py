@@ -51,7 +51,7 @@ class Figures(unittest.TestCase):
 
     def test_poses_are_judged_where_nothing_was_trained_or_chosen(self):
         heads = 'set', 'detector', 'descriptor', 'points', 'estimator', 'sequence', 'error', 'inliers'
-        errors = {'strecha': (0, 5), 'strecha relit': (10,), 'facade_2': (2,), 'facade_1': (0,), 'room_31': (3,), 'walk_facade': (5,), 'walk_room': (0,), 'walk_terrain': (0,)}
+        errors = {'strecha': (0, 5), 'strecha relit': (10,), 'facade_2': (2,), 'facade_1': (0,), 'room_31': (3,), 'list pairs.txt': (15,), 'walk_facade': (5,), 'walk_room': (0,), 'walk_terrain': (0,)}
         with tempfile.TemporaryDirectory() as folder:
             source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
             with open(source, 'w', newline='') as file:
@@ -60,8 +60,9 @@ class Figures(unittest.TestCase):
             summaries.summarize(source, target, *summaries.PLANS['estimators.csv'])
             with open(target, newline='') as file:
                 found = {row['place']: row for row in csv.DictReader(file)}
-        self.assertEqual({place: (row['pairs'], *(round(float(row[area]), 3) for area in ('at_10', 'at_5', 'at_2'))) for place, row in found.items()},
-                         {'same light': ('2', .75, .5, .5), 'other light': ('1', .8, .6, 0), 'chosen on': ('4', .55, .35, .25)})
+        self.assertEqual({place: (row['pairs'], *(round(float(row[area]), 3) for area in ('at_20', 'at_10', 'at_5', 'at_2'))) for place, row in found.items()},
+                         {'same light': ('2', .875, .75, .5, .5), 'other light': ('1', .9, .8, .6, 0), 'chosen on': ('4', .775, .55, .35, .25),
+                          'list pairs.txt': ('1', .25, 0, 0, 0)})
         self.assertEqual((found['same light']['low'], found['same light']['high']), ('0', '1'))
 
     def test_intervals(self):
