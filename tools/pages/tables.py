@@ -279,7 +279,7 @@ def photograph_claim():
     chain, sift = near['recommended chain'], near['SIFT, normalized image']
     return ('Of photographs alone: COLMAP brings %s of %s of one statue, by many people and cameras at noon, under clouds, at dusk and at sunset, into one\n'
             "reconstruction with the chain's points, %s with SIFT's, %s with SIFT's found on normalized images ([how](doc/colmap.md#a-comparison)). In maps of five scenes\n"
-            'of one light [`Localizer`](doc/maps.md#what-was-measured) places %s images within 5 cm and 0.5°, SIFT at such points %s; relit by computation %s and %s.' % (
+            'of one light [`Localizer`](doc/maps.md#what-was-measured) places %s images within 5 cm and 0.5°, SIFT at such points, without the refinement, %s; relit by computation %s and %s.' % (
                 *statue['chain'], statue['SIFT'][0], statue['normalized'][0], chain[0], sift[0], chain[1], sift[1]))
 
 
