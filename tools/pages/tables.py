@@ -70,13 +70,26 @@ def poses_and_time():
     return table(['points of', 'points', 'matches', 'as they are, PoseLib', 'up to 10°', 'ms a pair', 'refined here', 'up to 10°', 'ms a pair'], lines)
 
 
+def learned_and_chain():
+    """Of 1000 of ALIKED's points, as many of the chain's and four times as many, all refined here: scores, and times by the chain's, as they are
+    shown; the pairs."""
+    found = poses_by_time()
+    learned, *chain = (found[key]['refined'] for key in (('ALIKED-n16', 1000, 'LightGlue'), *(('recommended chain', points, 'mutual, a ratio') for points in (1000, 4000))))
+    return {'learned': '%.2f' % float(learned['at_5']), 'few': '%.2f' % float(chain[0]['at_5']), 'many': '%.2f' % float(chain[1]['at_5']),
+            'times': '%.0f' % (float(learned['milliseconds']) / float(chain[1]['milliseconds'])), 'pairs': learned['pairs']}
+
+
 def learned_limit():
     """README's sentence on learned features."""
-    found = poses_by_time()
-    ours, theirs = found['recommended chain', 4000, 'mutual, a ratio']['refined'], found['ALIKED-n16', 1000, 'LightGlue']['refined']
-    return ('- With a GPU take [learned features](doc/guide.md#learned-features): ALIKED with LightGlue finds better poses by as many points. On a CPU 4000 points\n'
-            '  of the recommended chain are level with 1000 of ALIKED, %.2f and %.2f, [in 1/%.0f of the time](doc/results/README.md#learned-features-and-time).' % (
-                float(ours['at_5']), float(theirs['at_5']), float(theirs['milliseconds']) / float(ours['milliseconds'])))
+    return ('- With a GPU take [learned features](doc/guide.md#learned-features): 1000 points of ALIKED with LightGlue, refined here, have a score of {learned},\n'
+            '  1000 of the recommended chain {few}. On a CPU 4000 of the chain have {many} [in 1/{times} of the time](doc/results/README.md#learned-features-and-time).').format(
+                **learned_and_chain())
+
+
+def learned_guide():
+    """The guide's sentence on the same."""
+    return ("By as many points ALIKED with LightGlue finds better poses than this project's: 1000 points, refined, have a score of {learned}, of the chain {few}. 4000 of the\n"
+            'chain have {many}, in 1/{times} of the processor time ([figures](results/README.md#learned-features-and-time)).').format(**learned_and_chain())
 
 
 def learned_claim():
@@ -226,6 +239,13 @@ def poses():
     return table(['points and descriptor', *head], lines)
 
 
+def pose_pairs():
+    """What README's poses are of."""
+    same, other = (estimates()[(CHAIN, place) + WAYS[-1]]['pairs'] for place in ('same light', 'other light'))
+    return ('- *Same light*: %s pairs of photographs of two buildings. *Other light*: %s pairs of rendered places at noon against dusk, night and\n'
+            '  winter, on which nothing was chosen. In brackets 95 %% intervals over these places. [More](doc/results/README.md#poses).' % (same, other))
+
+
 def pose_methods():
     """All methods that were measured, by what this project does and by what others do."""
     found, lines = estimates(), []
@@ -233,7 +253,7 @@ def pose_methods():
     ways = list(itertools.product(('propagated', 'refined', 'plain'), ('findRelativePose', 'PoseLib', 'MAGSAC')))
     for place, method in itertools.product(('other light', 'same light'), methods):
         rows_of = [found[(method, place, *way)] for way in ways]
-        lines.append([place, *method, score(rows_of[0]) if place == 'other light' else '%.2f' % float(rows_of[0]['at_5']), *('%.2f' % float(row['at_5']) for row in rows_of[1:])])
+        lines.append(['%s, %s pairs' % (place, rows_of[0]['pairs']), *method, score(rows_of[0]) if place == 'other light' else '%.2f' % float(rows_of[0]['at_5']), *('%.2f' % float(row['at_5']) for row in rows_of[1:])])
     return table(['', 'points of', 'descriptor', *('%s, %s' % (points, estimator) for points, estimator in ways)], lines)
 
 
@@ -393,7 +413,7 @@ def photographs_of_many():
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
-    step_by_step, mapped_index, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, learned_claim, learned_limit,
+    step_by_step, mapped_index, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, learned_claim, learned_limit, learned_guide, pose_pairs,
     detected_points, uncertainty, night)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
