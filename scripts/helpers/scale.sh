@@ -1,6 +1,7 @@
 #!/bin/sh
 # Measures searches among many codes, and prints the figures: exact at several widths beside faiss's, a mapped index of ten
-# million codes, Dask's workers. Takes some minutes, and pip's package index.
+# million codes, Dask's workers. Takes a quarter of an hour of a machine that does nothing else, 2 GB of memory and of disk, and pip's
+# package index.
 # With --document the results go to doc/results, from where the tables of doc/scale.md are made anew.
 #   scripts/helpers/scale.sh [--document] [--mapped=N] [--rounds=N]
 . "$(dirname "$0")/lib.sh"

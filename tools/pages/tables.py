@@ -363,6 +363,15 @@ def by_two(one, two):
     return '%.1f' % (one / two)
 
 
+def scale_run():
+    """When and where that was, and which rows two threads brought little in, by either program."""
+    data = scale()
+    found = {(r['bytes'], r['k'], r['threads']): r for r in data['flat']['rows']}
+    slow = sorted({key[0] for key, row in found.items() if key[2] == 1 and row['iib_ns'] < 1.5 * found[key[0], key[1], 2]['iib_ns']})
+    text = 'Of %s: %s. Searches take turns, and their medians of %d calls count.' % (data['date'], data['machine'], data['rounds'])
+    return text + ' At %s bytes the second thread\nbrought little in that run: those rows are to be measured again.' % ' and '.join(map(str, slow)) if slow else text
+
+
 def flat_search():
     """Exact search beside faiss's flat index on one thread, and what a second thread brings."""
     data, lines = scale(), []
@@ -413,7 +422,7 @@ def photographs_of_many():
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
-    step_by_step, mapped_index, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, learned_claim, learned_limit, learned_guide, pose_pairs,
+    step_by_step, mapped_index, scale_run, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, learned_claim, learned_limit, learned_guide, pose_pairs,
     detected_points, uncertainty, night)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})

@@ -6,8 +6,11 @@ Everything that is compared takes turns, with one thread and with two; the media
 are more than twice as fast as one is refused: the machine was not idle.
 """
 import argparse
+import datetime
 import json
+import os
 import pathlib
+import platform
 import statistics
 import subprocess
 import sys
@@ -76,6 +79,14 @@ def flat(trains, queries, rounds):
     return {'codes': trains, 'queries': queries, 'rows': rows}
 
 
+def machine():
+    """The processor, how many of its threads are there, and the instructions that count bits or look them up."""
+    lines = pathlib.Path('/proc/cpuinfo').read_text().splitlines()
+    name, flags = (next((line.partition(': ')[2] for line in lines if line.startswith(key)), '') for key in ('model name', 'flags'))
+    widest = 'AVX-512 with VPOPCNTDQ' if 'avx512_vpopcntdq' in flags else 'AVX2' if 'avx2' in flags else 'no AVX2'
+    return '%s, %d threads, %s' % (name.strip() or platform.machine(), os.cpu_count(), widest)
+
+
 OPENING = '''
 import json, resource, sys, time
 import numpy as np
@@ -133,7 +144,7 @@ def main():
     parser.add_argument('--mapped', type=int, default=10**7, help='in the MappedIndex (%(default)s)')
     parser.add_argument('--rounds', type=int, default=15, help='(%(default)s)')
     arguments = parser.parse_args()
-    result = {'faiss': faiss.__version__, 'faiss_options': faiss.get_compile_options().strip(),
+    result = {'date': str(datetime.date.today()), 'machine': machine(), 'rounds': arguments.rounds, 'faiss': faiss.__version__, 'faiss_options': faiss.get_compile_options().strip(),
               'flat': flat(100000, 512, arguments.rounds)}
     with tempfile.TemporaryDirectory() as folder:
         name = str(pathlib.Path(folder) / 'codes')
