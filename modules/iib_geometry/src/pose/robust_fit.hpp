@@ -196,8 +196,10 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
         std::vector<Model> models;
         std::vector<double> losses;  // or anything over the limit
     };
-    // Several threads propose at once; models are taken in the order of their samples, by the limit that is then.
-    std::vector<Proposal> proposals(getNumThreads() > 1 ? 32 : 1);
+    // Several threads propose at once; models are taken in the order of their samples, by the limit that is then. The fewest
+    // samples, 100 or 150, are whole batches.
+    const double batch = getNumThreads() > 1 ? 25 : 1;
+    std::vector<Proposal> proposals;
     std::vector<std::pair<double, Model>> best;  // losses in order, and models
     std::vector<double> squared;
     double leastLoss = none, trials = mostTrials;
@@ -219,7 +221,7 @@ template <class Problem> Fit<Problem> search(const Problem& problem, double scal
     const auto limitOf = [&] { return best.size() < most ? none : best.back().first; };
     for (int trial = 0; trial < trials;)
     {
-        proposals.resize(std::min<size_t>(proposals.size(), cvCeil(trials - trial)));
+        proposals.resize(cvCeil(std::min(batch, trials - trial)));
         for (Proposal& proposal : proposals)
         {
             std::vector<int>& sample = proposal.sample;
