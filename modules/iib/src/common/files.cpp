@@ -205,10 +205,15 @@ void WholeFile::write(const void* data, size_t size)
 
 void WholeFile::finish()
 {
+    if (!stream)
+        return;
     const bool good = !std::ferror(stream) && flushToDisk(stream), closed = std::fclose(stream) == 0;
     stream = 0;
     if (!good || !closed)
+    {
+        discard();
         cannotWrite(name);
+    }
 }
 
 void WholeFile::commit()
@@ -216,8 +221,7 @@ void WholeFile::commit()
     // Before anything is done, since memory may lack.
     const size_t slash = target.rfind('/');
     const String folder = slash == String::npos ? String(".") : target.substr(0, slash + 1);
-    if (stream)
-        finish();
+    finish();
     if (!replace(temporary, target, folder))
         cannotWrite(name);
     temporary.clear();

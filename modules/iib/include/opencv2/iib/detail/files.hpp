@@ -51,7 +51,8 @@ public:
     //! Where it is until commit(), for who writes by names.
     const String& part() const { return temporary; }
     void write(const void* data, size_t size);
-    //! Puts what was written on the disk, so that commit() has only to rename, as of several files. @throws cv::Exception if any write failed.
+    //! Puts what was written on the disk, so that commit() has only to rename, as of several files. Nothing is
+    //! written after it. @throws cv::Exception if any write failed; the file is discarded then.
     void finish();
     //! Puts the file in its place, once it is on the disk. @throws cv::Exception if any write failed.
     void commit();
