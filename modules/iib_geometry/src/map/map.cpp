@@ -248,9 +248,10 @@ Map readMap(const std::string& folder)
 {
     std::error_code error;
     if (!fs::is_regular_file(systemName(folder + FILE_NAME), error))
-        CV_Error(Error::StsError, folder + (fs::exists(systemName(folder + "/map.json"), error)
-                                                           ? " is a map of an earlier version: make it again"
-                                                           : " is no map: it has no map.iib"));
+        CV_Error(Error::StsError,
+                folder + (fs::exists(systemName(folder + "/map.json"), error)
+                                         ? " is a map of an earlier version: make it again, in another folder"
+                                         : " is no map: it has no map.iib"));
     CheckedReader file(folder + FILE_NAME, KIND);
     Map map;
     MapFile parts(file);

@@ -179,7 +179,7 @@ TEST_F(SmallMap, folders_that_are_no_maps)
     EXPECT_EQ(name + " is no map: it has no map.iib", error());
     folder.makeFolder("map");
     folder.write("map/map.json", "{}");
-    EXPECT_EQ(name + " is a map of an earlier version: make it again", error());
+    EXPECT_EQ(name + " is a map of an earlier version: make it again, in another folder", error());
     for (const char* mine : {"map.json", "codes.npy", "frames.bin"})  // which no map of this version has
     {
         folder.write("map/" + std::string(mine), "precious");
