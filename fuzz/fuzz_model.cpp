@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// readModel on the files of a COLMAP model, binary or text, that say anything: a cv::Exception, or images with cameras, poses and
+// keypoints that writeModel takes, and which are the same when they are read again.
+
+#include "byte_source.hpp"
+#include "map/colmap_model.hpp"
+#include "support/temporary_file.hpp"
+
+namespace {
+
+using namespace cv;
+using namespace cv::iib;
+
+//! The next so many bytes.
+std::string takeBytes(ByteSource& in, size_t count)
+{
+    std::string bytes(std::min(count, in.left()), '\0');
+    for (char& byte : bytes)
+        byte = in.take<char>();
+    return bytes;
+}
+
+bool finite(const std::vector<Point2d>& points)
+{
+    return std::all_of(points.begin(), points.end(),
+            [](const Point2d& p) { return std::isfinite(p.x) && std::isfinite(p.y); });
+}
+
+void check(const std::vector<PosedImage>& images)
+{
+    bool known = true;
+    int points = 0;
+    for (const PosedImage& image : images)
+    {
+        const Matx33d rotation = image.cameraFromWorld.rotation();
+        FUZZ_CHECK(!image.name.empty() && image.camera.size.area() > 0);
+        FUZZ_CHECK(norm(rotation * rotation.t() - Matx33d::eye()) < 1e-9 && determinant(rotation) > 0);
+        FUZZ_CHECK(checkRange(image.cameraFromWorld.matrix) && image.sees.size() == image.pixels.size());
+        known = known && finite(image.pixels) && image.name.find('\0') == std::string::npos;
+        for (int point : image.sees)
+            points = std::max(points, point + 1);
+    }
+    const opencv_test::TemporaryFolder copy;
+    const std::vector<Point3d> places(points);
+    FUZZ_CHECK(refused([&] { writeModel(copy.name, images, places); }) == !known);
+    if (!known)
+        return;
+    const std::vector<PosedImage> again = readModel(copy.name);
+    FUZZ_CHECK(again.size() == images.size());
+    for (size_t i = 0; i < images.size(); i++)
+        FUZZ_CHECK(again[i].name == images[i].name && again[i].pixels.size() == images[i].pixels.size() &&
+                   camerasOf(std::vector<PosedImage>{again[i], images[i]}).size() == 1);
+}
+
+void run(ByteSource& in)
+{
+    static const opencv_test::TemporaryFolder folders[2];  // binary and text
+    const bool text = in.flag();
+    const std::string end = text ? ".txt" : ".bin", &folder = folders[text].name;
+    opencv_test::writeFile(folder + "/cameras" + end, takeBytes(in, in.take<ushort>()));
+    opencv_test::writeFile(folder + "/images" + end, takeBytes(in, in.left()));
+    std::vector<PosedImage> images;
+    if (!refused([&] { images = readModel(folder); }))
+        check(images);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }
