@@ -98,7 +98,7 @@ private:
                                            in.between(-wild, 2 + wild), takeShare(wild), s.model.crossCheck);
         s.setMode(s.matcher->getMode());
         if (in.flag())
-            setBlocks(s);
+            setChunk(s);
         return s;
     }
 
@@ -120,7 +120,7 @@ private:
         case 8: setParameters(s); break;
         case 9: overwrite(s); break;
         case 10: inspect(s); break;
-        case 11: setBlocks(s); break;
+        case 11: setChunk(s); break;
         case 12: useThreads(in.rarely(4) ? 3 : 1); break;
         default: ask(s); break;
         }
@@ -197,7 +197,7 @@ private:
         s.replace(other);
     }
 
-    void setBlocks(Subject& s)
+    void setChunk(Subject& s)
     {
         s.chunk.queryCount = in.between(1, 9);
         s.chunk.codeBlocks = s.chunk.codeBlocksOfLimits = in.between(1, 3);

@@ -42,8 +42,8 @@ struct PatchAlignment
 //! Smooths a normalized image; the result is a part of a larger one, where its border is repeated.
 Mat preparedForAlignment(const Mat& normalized);
 
-/** A coarse look at two images around points inside them: false where they hardly agree, in a tenth of the time that it
- takes to see so by PatchAligner. @param warp from the first image's surroundings to the second's. */
+/** A coarse look at two images around points inside them: false where they hardly agree, which PatchAligner would take much
+ longer to see. @param warp from the first image's surroundings to the second's. */
 bool mayAgree(
         const Mat& image1, const Vec2d& point1, const Mat& image2, const Vec2d& point2, const Matx22d& warp);
 

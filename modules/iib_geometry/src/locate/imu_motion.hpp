@@ -8,7 +8,8 @@ namespace cv::iib {
 //! How an IMU moves, and what it takes to read it.
 struct ImuState
 {
-    //! Places of an error's parts: turn about the world's axes, position, velocity, biases of rate and force, gravity.
+    //! Places of an error's parts: turn about the world's axes (rad), position (m), velocity (m/s), biases of rate (rad/s) and
+    //! force (m/s^2), gravity (m/s^2).
     enum Part
     {
         TURN = 0,
@@ -23,7 +24,9 @@ struct ImuState
     typedef Matx<double, SIZE, SIZE> Square;
 
     Matx33d rotation = Matx33d::eye();  //!< world from IMU
-    Vec3d position, velocity, rate, force, gravity;
+    Vec3d position, velocity;           //!< m, m/s
+    Vec3d rate, force;                  //!< the IMU's biases: rad/s, m/s^2
+    Vec3d gravity;                      //!< m/s^2
 };
 
 //! A state moved by an error, and the error that moves `b` to `a`.

@@ -56,14 +56,14 @@ bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double li
 //! A match near a pose.
 struct LinearMatch
 {
-    Vec2d error;                //!< of the match's pixel from where the pose has its point
+    Vec2d error;                //!< of the match's pixel from where the pose has its point, pixels
     Matx<double, 2, 6> byPose;  //!< derivatives of that place by a step of the pose
     double weight = 0;          //!< by Cauchy's loss; 0 behind the camera
 };
 
 std::vector<LinearMatch> linearize(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose);
 
-//! The pose whose centre moved and which turned about the world's axes.
+//! The pose whose centre moved and which turned about the world's axes: step holds the move (the map's unit) and the turn (rad).
 Affine3d moved(const Affine3d& pose, const Vec6d& step);
 
 /** Moves a pose to the least reprojection error with Cauchy's loss of a deviation, which cv::solvePnPRefineLM has not, by

@@ -15,6 +15,7 @@ namespace {
 const int STRIDE = 32;          // matches between two looks at the limit
 const double MOST_SCALE = .01;  // of what the points span: wider, few wrong poses can be told from right ones
 const double NOWHERE = 1e-300;  // keeps an error of 0 / 0, at the epipoles, finite
+const int STEPS = 6;            // of a pose: five, and one more for an even number
 
 std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
 {
@@ -25,6 +26,32 @@ std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
         rays[i] = Point2d((p[0] - camera(0, 2)) / camera(0, 0), (p[1] - camera(1, 2)) / camera(1, 1));
     }
     return rays;
+}
+
+//! The rotation from five directions to others (Kabsch 1976).
+Matx33d rotationBetween(const Point2d (&first)[5], const Point2d (&second)[5])
+{
+    Matx33d products = Matx33d::zeros(), U, Vt;
+    for (int k = 0; k < 5; k++)
+        products += normalize(Vec3d(second[k].x, second[k].y, 1)) *
+                    normalize(Vec3d(first[k].x, first[k].y, 1)).t();
+    Vec3d values;
+    SVD::compute(products, values, U, Vt);
+    return U * Matx33d::diag(Vec3d(1, 1, determinant(U * Vt))) * Vt;
+}
+
+//! Inline and of copies, so that compilers make vectors of loops over matches.
+inline double squaredErrorOf(const Matx33d& E, const Vec4d& weights, const Point2d& u, const Point2d& v)
+{
+    const double line0 = E(0, 0) * u.x + E(0, 1) * u.y + E(0, 2),
+                 line1 = E(1, 0) * u.x + E(1, 1) * u.y + E(1, 2),
+                 line2 = E(2, 0) * u.x + E(2, 1) * u.y + E(2, 2),
+                 back0 = E(0, 0) * v.x + E(1, 0) * v.y + E(2, 0),
+                 back1 = E(0, 1) * v.x + E(1, 1) * v.y + E(2, 1);
+    const double error = v.x * line0 + v.y * line1 + line2;
+    const double length2 = weights[0] * line0 * line0 + weights[1] * line1 * line1 +
+                           weights[2] * back0 * back0 + weights[3] * back1 * back1;
+    return error * error / (length2 + NOWHERE);
 }
 
 }  // namespace
@@ -47,40 +74,6 @@ EpipolarProblem EpipolarProblem::mixed(const std::vector<int>& order) const
         other.second_[i] = second_[order[i]];
     return other;
 }
-
-namespace {
-
-//! The rotation from five directions to others (Kabsch 1976).
-Matx33d rotationBetween(const Point2d (&first)[5], const Point2d (&second)[5])
-{
-    Matx33d products = Matx33d::zeros(), U, Vt;
-    for (int k = 0; k < 5; k++)
-        products += normalize(Vec3d(second[k].x, second[k].y, 1)) *
-                    normalize(Vec3d(first[k].x, first[k].y, 1)).t();
-    Vec3d values;
-    SVD::compute(products, values, U, Vt);
-    return U * Matx33d::diag(Vec3d(1, 1, determinant(U * Vt))) * Vt;
-}
-
-}  // namespace
-
-namespace {
-
-//! Inline and of copies, so that compilers make vectors of loops over matches.
-inline double squaredErrorOf(const Matx33d& E, const Vec4d& weights, const Point2d& u, const Point2d& v)
-{
-    const double line0 = E(0, 0) * u.x + E(0, 1) * u.y + E(0, 2),
-                 line1 = E(1, 0) * u.x + E(1, 1) * u.y + E(1, 2),
-                 line2 = E(2, 0) * u.x + E(2, 1) * u.y + E(2, 2),
-                 back0 = E(0, 0) * v.x + E(1, 0) * v.y + E(2, 0),
-                 back1 = E(0, 1) * v.x + E(1, 1) * v.y + E(2, 1);
-    const double error = v.x * line0 + v.y * line1 + line2;
-    const double length2 = weights[0] * line0 * line0 + weights[1] * line1 * line1 +
-                           weights[2] * back0 * back0 + weights[3] * back1 * back1;
-    return error * error / (length2 + NOWHERE);
-}
-
-}  // namespace
 
 double EpipolarProblem::squaredError(const Matx33d& E, int i) const
 {
@@ -153,8 +146,6 @@ double EpipolarProblem::parallax(const RelativePose& pose, int i) const
                       : std::numeric_limits<double>::infinity();
 }
 
-const int STEPS = 6;  // five, and one more for an even number
-
 //! A pose and its derivatives.
 struct EpipolarProblem::Linear
 {
@@ -212,9 +203,9 @@ Row<EpipolarProblem::Step> EpipolarProblem::row(
     return row;
 }
 
-/** The plane that most matches lie on, if one is seen with the pose: a vector n that has the product 1 with its points, in lengths of
-t, so that R + t n' is its homography (Hartley and Zisserman 2004, section 13.1). Samples of three matches propose planes; a match is as far from one as its point on the plane is seen from it, pixels as Sampson's
-error has them. */
+/** The plane that most matches lie on, if one is seen with the pose: a vector n that has the product 1 with its points, in
+lengths of t, so that R + t n' is its homography (Hartley and Zisserman 2004, section 13.1). Samples of three matches propose
+planes; a match is as far from one as its point on the plane is seen from it, pixels as Sampson's error has them. */
 Vec3d EpipolarProblem::planeOf(const RelativePose& pose, double scale) const
 {
     struct Seen

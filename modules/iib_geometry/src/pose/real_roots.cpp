@@ -11,7 +11,7 @@ namespace {
 
 const int HIGHEST = 10;
 
-//! Inline, and of a degree that the compiler knows: it takes a fifth of a pose's time.
+//! Inline, and of a degree that the compiler knows: most of the search for roots is spent here.
 inline double valueAt(const double* p, int degree, double x, double& slope)
 {
     double value = p[degree];

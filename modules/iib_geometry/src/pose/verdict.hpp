@@ -27,7 +27,7 @@ public:
 
     /** Logarithm to base 10 of the number of false alarms, at that limit of the errors at which it is least.
     @param squared errors of the matches, pixels^2.
-    @param wrong such errors of wrong matches: see errorsOfWrongMatches().
+    @param wrong such errors of wrong matches: see errorsOfWrongMatches(). Empty: only points that are anywhere count.
     @param sampleSize matches that give a model.
     @param limits to try, pixels.
     @param best if not null: that limit. */

@@ -123,8 +123,8 @@ public:
     CV_ALWAYS_INLINE void advance(const TileQueries& queries, const unsigned* block, int from, int to)
     {
         for (; to - from > WIDEST; from += WIDEST)
-            addUp(queries, block, from, from + WIDEST);
-        addUp(queries, block, from, to);
+            addWords(queries, block, from, from + WIDEST);
+        addWords(queries, block, from, to);
     }
 
     CV_ALWAYS_INLINE void distances(Counts* result) const
@@ -136,7 +136,7 @@ public:
 private:
     static constexpr int WIDEST = 2000;  // words that add up in 16 bits: 2047 times 32 at most
 
-    CV_ALWAYS_INLINE void addUp(const TileQueries& queries, const unsigned* block, int from, int to)
+    CV_ALWAYS_INLINE void addWords(const TileQueries& queries, const unsigned* block, int from, int to)
     {
         const int MOST = 30;  // vectors that add up in bytes: 31 times 8 at most
         v_uint16 wide[Q * WIDE];
@@ -154,9 +154,9 @@ private:
                 high[pair] = vx_setzero_u16();
             }
             for (; v + 3 <= next; v += 3)
-                addUp<3>(low, high, queries, block, v);
+                addVectors<3>(low, high, queries, block, v);
             for (; v < next; v++)
-                addUp<1>(low, high, queries, block, v);
+                addVectors<1>(low, high, queries, block, v);
             for (int pair = 0; pair < PAIRS; pair++)
             {
                 widen(low[pair], wide + 2 * pair * WIDE);
@@ -171,7 +171,7 @@ private:
 
     // A sum of N distances has to fit half a byte: a distance is 4 at most, so N is 3 at most.
     template <int N>
-    static CV_ALWAYS_INLINE void addUp(
+    static CV_ALWAYS_INLINE void addVectors(
             Bytes* low, v_uint16* high, const TileQueries& queries, const unsigned* block, int v)
     {
         for (int half = 0; half < 2; half++)
@@ -195,7 +195,7 @@ private:
         }
     }
 
-    // addUp() shifts the high halves but does not mask them, which is cheaper, so each sum also has 16 times the low
+    // addVectors() shifts the high halves but does not mask them, which is cheaper, so each sum also has 16 times the low
     // half of every second byte. That is subtracted here, once. Modulo 2^16 this is exact, since sums fit in bytes.
     static CV_ALWAYS_INLINE Bytes highSums(const Bytes& low, const v_uint16& high)
     {

@@ -53,7 +53,8 @@ Matches that cv::iib::refineMatches refined make the pose more accurate where th
     only turned or all the points are far away, has a deviation of a radian or more. Of 10 matches with noise of a pixel 75 % of
     the errors are inside the told 95 %, of 15 or more 90 %
 @param reason if not null: why there is no pose, a sentence; empty if there is one
-@return false, with R, t and covariance empty (NaN where their size is fixed), if the matches that agree are not more than chance, or two poses explain them as well
+@return false, with R, t and covariance empty (NaN where their size is fixed), if the matches that agree are not more than
+    chance, or two poses explain them as well
 @throws cv::Exception for points of a wrong type or of different numbers, points that are not finite, matrices that are
     not a camera's, or a scale that is negative or not finite */
 CV_EXPORTS_W bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraMatrix1,

@@ -15,8 +15,9 @@ cv::findFundamentalMat and cv::findHomography call inliers.
 
 The number of false alarms (@cite MoisanStival2004, section 3) is how many models that agree as well are expected among wrong
 matches. It is counted in matches and in places, cells of a 32nd of the diagonal of what the points span, since matches beside
-each other may be wrong together; the larger number counts. How often a wrong match agrees is what points that are anywhere would do
-or, if that is more, what points of different matches do with the model of those that agree. findRelativePose and alignImages take it for no more than chance above -3, one in a thousand.
+each other may be wrong together; the larger number counts. How often a wrong match agrees is what points that are anywhere would
+do or, if that is more, what points of different matches do with the model of those that agree. findRelativePose and alignImages
+take it for no more than chance above -3, one in a thousand.
 
 @param points1, points2 the matches, right and wrong ones: N x 2, or N of two channels, CV_32F or CV_64F; pixels
 @param inliers N x 1 or 1 x N, CV_8U: not 0 for matches that agree
