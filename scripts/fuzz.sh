@@ -1,6 +1,6 @@
 #!/bin/sh
 # Fuzzes the library with clang's libFuzzer, address and undefined-behaviour sanitizers:
-# scripts/fuzz.sh [--plain] [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each. What is
+# scripts/fuzz.sh [--plain] [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each, one a core. What is
 # found on the way stays in build-fuzz/corpus and makes the next run start further on; an input that fails is
 # kept in build-fuzz/failures and belongs into fuzz/corpus, with a test, once the bug is fixed. --plain leaves the
 # sanitizers out and makes inputs smaller, so that many times as many are compared with the oracles; its corpus is the
@@ -58,19 +58,33 @@ export ASAN_OPTIONS="malloc_context_size=0:quarantine_size_mb=4:${ASAN_OPTIONS:-
 [ -d /dev/shm ] && export OPENCV_TEMP_PATH=/dev/shm
 corpus="$root/build-fuzz/corpus" failures="$root/build-fuzz/failures"
 mkdir -p "$failures"
+
+# fuzz TARGET: leaves a file beside its log if nothing was found.
+fuzz() {
+    options="-entropic=0 -detect_leaks=0 -timeout=60 -rss_limit_mb=4096 -max_len=$longest -artifact_prefix=$failures/$1-"
+    mkdir -p "$corpus/$1"
+    if "$build/fuzz/iib_fuzz_$1" -max_total_time="$seconds" -print_final_stats=1 $options "$corpus/$1" \
+        "$root/fuzz/corpus/$1" >"$build/$1.log" 2>&1 && { [ -n "$plain" ] || replay "$1"; }; then
+        executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$1.log" | head -n 1)
+        echo "$1: $executions executions, $(ls "$corpus/$1" | wc -l) inputs kept"
+        touch "$build/$1.passed"
+    else
+        tail -n 30 "$build/$1.log"
+    fi
+}
+
+say "$*: $seconds s each, $jobs at a time"
+running=0
+for target in "$@"; do
+    rm -f "$build/$target.passed"
+    fuzz "$target" &
+    running=$((running + 1))
+    [ $((running % jobs)) != 0 ] || wait
+done
+wait
 failed=""
 for target in "$@"; do
-    options="-entropic=0 -detect_leaks=0 -timeout=60 -rss_limit_mb=4096 -max_len=$longest -artifact_prefix=$failures/$target-"
-    mkdir -p "$corpus/$target"
-    say "$target, $seconds s"
-    if "$build/fuzz/iib_fuzz_$target" -max_total_time="$seconds" -print_final_stats=1 $options "$corpus/$target" \
-        "$root/fuzz/corpus/$target" >"$build/$target.log" 2>&1 && { [ -n "$plain" ] || replay "$target"; }; then
-        executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$target.log" | head -n 1)
-        echo "$target: $executions executions, $(ls "$corpus/$target" | wc -l) inputs kept"
-    else
-        failed="$failed $target"
-        tail -n 30 "$build/$target.log"
-    fi
+    [ -e "$build/$target.passed" ] || failed="$failed $target"
 done
 [ -z "$failed" ] || {
     echo "failed:$failed; the inputs are in $failures" >&2
