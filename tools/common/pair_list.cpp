@@ -13,10 +13,7 @@ namespace {
 
 namespace fs = cv::utils::fs;
 
-bool isCamera(const cv::Matx33d& K)
-{
-    return K(0, 0) > 0 && K(1, 1) > 0 && K.row(2) == cv::Matx13d(0, 0, 1);
-}
+bool isCamera(const cv::Matx33d& K) { return K(0, 0) > 0 && K(1, 1) > 0 && K.row(2) == cv::Matx13d(0, 0, 1); }
 
 //! Up to what five digits leave.
 bool isRotation(const cv::Matx33d& R)

@@ -12,8 +12,8 @@ const std::string POSE = " 0.8 0. 0.6 1. 0. 1. 0. 2. -0.6 0. 0.8 3. 0. 0. 0. 1."
 TEST(PairList, two_images_with_cameras_and_pose)
 {
     const TestFolder folder;
-    folder.write("pairs.txt", "hall/images/a.jpg hall/other/b.png 0 3" + CAMERAS + POSE + "\r\nc.jpg d.jpg 0 0" +
-                                      CAMERAS + POSE + "\n");
+    folder.write("pairs.txt", "hall/images/a.jpg hall/other/b.png 0 3" + CAMERAS + POSE +
+                                      "\r\nc.jpg d.jpg 0 0" + CAMERAS + POSE + "\n");
     const std::vector<ViewPair> pairs = readPairList(folder.path("pairs.txt"), "/data");
     ASSERT_EQ(2u, pairs.size());
     EXPECT_EQ("list pairs.txt", pairs[0].set);
@@ -34,11 +34,11 @@ TEST(PairList, broken_lines_are_told)
 {
     const TestFolder folder;
     const std::string good = "a b 0 0" + CAMERAS + POSE, zeros = " 0 0 0 0 0 0 0 0 0";
-    for (const std::string& bad : {std::string(), std::string("a b"), "a b 0 0" + CAMERAS,
-                 good + " 1", "a b 4 0" + CAMERAS + POSE, "a b 0 -1" + CAMERAS + POSE, "a,b c 0 0" + CAMERAS + POSE,
-                 "a b 0 0" + zeros + zeros + POSE,                                          // no camera
-                 "a b 0 0" + CAMERAS + " 1 0 0 1 0 1 0 2 0 0 -1 3 0 0 0 1",                 // a mirror
-                 "a b 0 0" + CAMERAS + " 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"})                 // no movement
+    for (const std::string& bad : {std::string(), std::string("a b"), "a b 0 0" + CAMERAS, good + " 1",
+                 "a b 4 0" + CAMERAS + POSE, "a b 0 -1" + CAMERAS + POSE, "a,b c 0 0" + CAMERAS + POSE,
+                 "a b 0 0" + zeros + zeros + POSE,                           // no camera
+                 "a b 0 0" + CAMERAS + " 1 0 0 1 0 1 0 2 0 0 -1 3 0 0 0 1",  // a mirror
+                 "a b 0 0" + CAMERAS + " 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"})  // no movement
     {
         folder.write("pairs.txt", good + "\n" + bad + "\n");
         EXPECT_NE(std::string::npos,
