@@ -1,7 +1,8 @@
 #!/bin/sh
 # Makes the site of the documentation in build/docs/html: guides, tutorials and the C++ reference with Doxygen, the reference of
 # the Python package, its examples with what they print and draw, and the pages of results and of localization. Any warning and any
-# dead link is an error. Where pip reaches no package index, the examples stand without their output.
+# dead link is an error. Where pip reaches no package index, the examples stand without their output, and the reference of the Python
+# package without the methods of its extension.
 #   scripts/docs.sh [WHEEL]
 # WHEEL: the Python package, if it is built; else it is built, linked with what the tests have built, if they have.
 . "$(dirname "$0")/helpers/lib.sh"
@@ -16,16 +17,17 @@ rm -rf "$build/docs"
 pictures="$build/docs/pictures" environment="$build/docs/environment" library="$build/libopencv_iib_static.a"
 mkdir -p "$pictures"
 cd "$root"
-"$python3" scripts/helpers/python_api.py >"$build/docs/python_api.md"
 [ -f "$library" ] || library=""
 "$python3" -m venv "$environment"
 if "$environment/bin/pip" install --quiet --retries 0 --timeout 15 opencv-python-headless pycolmap; then
     say "installing the package, and running its examples"
     "$environment/bin/pip" install --quiet "--config-settings=cmake.define.IIB_STATIC_LIBRARY=$library" "$wheel"
+    "$environment/bin/python" scripts/helpers/python_api.py >"$build/docs/python_api.md"
     GLOG_minloglevel=1 "$environment/bin/python" scripts/helpers/python_examples.py "$pictures" >"$build/docs/python_examples.md"
     "$environment/bin/opencv-iib" align tools/synthetic/view_noon.jpg tools/synthetic/view_panned.jpg --out "$build/docs/align"
 else
-    say "skipped: the examples' output (pip reaches no package index)"
+    say "skipped: the examples' output, and methods of the extension (pip reaches no package index)"
+    "$python3" scripts/helpers/python_api.py >"$build/docs/python_api.md"
     "$python3" scripts/helpers/python_examples.py >"$build/docs/python_examples.md"
 fi
 {

@@ -14,7 +14,7 @@ Classes, their methods and constants have the names of ``cv2.iib``; functions fr
 inside is its own: nothing but arrays and plain values passes between it and cv2.
 """
 from opencv_iib import _start  # first: the rest takes longer
-from opencv_iib import _core
+from opencv_iib import _core, _methods
 from opencv_iib._core import error
 from opencv_iib._arguments import integer
 from opencv_iib._types import DMatch, KeyPoint

@@ -11,15 +11,17 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, number
 from opencv_iib._arrays import ArrayOrArrays, Images, are_images, as_arrays, as_image, as_matrix, with_images
+from opencv_iib._copies import around, copied, state_of
 from opencv_iib._parameter_file import text_of
-from opencv_iib.detectors import Detector, HessianDetector, core_detector, for_pickle
+from opencv_iib.detectors import HessianDetector, core_detector, for_pickle
 from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset, preset_number
 from opencv_iib.keypoints import Keypoints, as_rows
 
 K = TypeVar('K', bound=Keypoints)
 
 
-class IIBDescriptorExtractor(Detector):
+@copied
+class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
     """Illumination-insensitive binary descriptor; names, keywords and bits are those of ``cv2.iib``.
 
     Images are H x W, H x W x 3 (BGR) or H x W x 4 (BGRA) arrays of uint8, uint16 or float32, of any strides.
@@ -41,6 +43,8 @@ class IIBDescriptorExtractor(Detector):
     (PRESET_S128, PRESET_S256, PRESET_S512, PRESET_ACCURATE, PRESET_COMPACT, PRESET_TINY, PRESET_BALANCED,
      PRESET_VIEWPOINT, PRESET_UNIVERSAL, PRESET_SMALL) = Preset
 
+    _detector: Any = None  #: what its user gave it
+
     def __init__(self, scaleFactor: float = 2.0, granularity: int = 4, channels: int = Channel.DEFAULT,
                  mapping: int = Mapping.MEAN, overlap: bool = False, useOrientation: bool = False,
                  extraChannels: int = 0) -> None:
@@ -54,7 +58,7 @@ class IIBDescriptorExtractor(Detector):
         :param useOrientation: turn the square by a keypoint's angle.
         :param extraChannels: number of maps that computeWithChannels is given, 0 to 16.
         """
-        self._core = _core.Extractor.create(
+        super().__init__(
             number(scaleFactor, 'scaleFactor'), integer(granularity, 'granularity'), integer(channels, 'channels'),
             integer(mapping, 'mapping'), bool(overlap), bool(useOrientation), integer(extraChannels, 'extraChannels'))
 
@@ -78,8 +82,7 @@ class IIBDescriptorExtractor(Detector):
             warnings.warn("createPreset without a scaleFactor takes 2, ORB's: for other keypoints say "
                           "scaleFactor=IIB.scaleFactorFor('AKAZE'), or use createFor(detector, preset)", stacklevel=2)
             scaleFactor = 2.0
-        return cls._of(_core.Extractor.createPreset(integer(preset_number(preset), 'preset'),
-                                                    number(scaleFactor, 'scaleFactor')))
+        return around(cls, cls._createPreset(integer(preset_number(preset), 'preset'), number(scaleFactor, 'scaleFactor')))
 
     @classmethod
     def createFor(cls, detector: Any, preset: Union[int, str] = -1) -> IIBDescriptorExtractor:
@@ -88,7 +91,7 @@ class IIBDescriptorExtractor(Detector):
         :param detector: has ``detect(image, mask)``; its ``getDefaultName()`` or its class's name gives the factor.
         :param preset: one of PRESET_, of :class:`Preset`, or its name; -1 for the paper's default descriptor.
         """
-        extractor = cls._of(_core.Extractor.createFor(core_detector(detector), integer(preset_number(preset), 'preset')))
+        extractor = around(cls, cls._createFor(core_detector(detector), integer(preset_number(preset), 'preset')))
         extractor._detector = detector
         return extractor
 
@@ -111,7 +114,7 @@ class IIBDescriptorExtractor(Detector):
         :param detector: a detector object, by the name that it has in ``cv2.iib``.
         """
         known = detectorName if detector is None else detector
-        return _core.Extractor.scaleFactorFor(known if isinstance(known, str) else core_detector(known))
+        return _core.IIBDescriptorExtractor._scaleFactorFor(known if isinstance(known, str) else core_detector(known))
 
     @overload
     def compute(self, image: Images, keypoints: Sequence[K]) -> tuple[tuple[K, ...], tuple[NDArray[np.uint8], ...]]: ...
@@ -134,7 +137,7 @@ class IIBDescriptorExtractor(Detector):
         :param extraChannels: getExtraChannels() arrays, each H x W, of uint8, uint16 or float32.
         :return: as compute.
         """
-        descriptors, kept = self._core.compute(as_image(image), as_rows(keypoints), as_arrays(extraChannels, 'an extra channel'))
+        descriptors, kept = self._compute(as_image(image), as_rows(keypoints), as_arrays(extraChannels, 'an extra channel'))
         if kept is None:
             return keypoints, descriptors
         indices = kept.ravel()
@@ -153,107 +156,19 @@ class IIBDescriptorExtractor(Detector):
 
         It gets arrays of its own and may be of a foreign cv2. The scale factor stays as it is; see createFor.
         """
-        self._core.setDetector(core_detector(detector))
+        self._setDetector(core_detector(detector))
         self._detector = detector
 
     def getDetector(self) -> Any:
         """What setDetector was given; None for the default, the ORB of the OpenCV inside."""
         return self._detector
 
-    def levelSizes(self) -> tuple[int, ...]:
-        """Bytes of each level, coarse first; their sum is descriptorSize()."""
-        return tuple(self._core.levelSizes())
-
-    def descriptorType(self) -> int:
-        """CV_8U, which is 0."""
-        return self._core.descriptorType()
-
-    def defaultNorm(self) -> int:
-        """NORM_HAMMING, which is 6."""
-        return self._core.defaultNorm()
-
-    def setScaleFactor(self, scaleFactor: float) -> None:
-        """Side of the described square in units of a keypoint's size, > 0."""
-        self._core.scaleFactor = number(scaleFactor, 'scaleFactor')
-
-    def getScaleFactor(self) -> float:
-        """See setScaleFactor."""
-        return self._core.scaleFactor
-
-    def setGranularity(self, granularity: int) -> None:
-        """Number of levels, 1 to 6. Another one ends a selection, as other channels, mapping or overlap do."""
-        self._core.granularity = integer(granularity, 'granularity')
-
-    def getGranularity(self) -> int:
-        """See setGranularity."""
-        return self._core.granularity
-
-    def setChannels(self, channels: int) -> None:
-        """A sum of CHANNEL_ values; may be 0 if there are extra channels."""
-        self._core.channels = integer(channels, 'channels')
-
-    def getChannels(self) -> Channel:
-        """See setChannels."""
-        return Channel(self._core.channels)
-
-    def setMapping(self, mapping: int) -> None:
-        """One of MAPPING_."""
-        self._core.mapping = integer(mapping, 'mapping')
-
-    def getMapping(self) -> Mapping:
-        """See setMapping."""
-        return Mapping(self._core.mapping)
-
-    def setOverlap(self, overlap: bool) -> None:
-        """Whether the windows of 2 x 2 cells slide by one cell instead of two."""
-        self._core.overlap = bool(overlap)
-
-    def getOverlap(self) -> bool:
-        """See setOverlap."""
-        return self._core.overlap
-
-    def setUseOrientation(self, useOrientation: bool) -> None:
-        """True: ORIENTATION_KEYPOINT, False: ORIENTATION_NONE."""
-        self._core.useOrientation = bool(useOrientation)
-
-    def getUseOrientation(self) -> bool:
-        """Whether the orientation is another than ORIENTATION_NONE."""
-        return self._core.useOrientation
-
-    def setOrientation(self, mode: int) -> None:
-        """How the described squares are turned: one of ORIENTATION_."""
-        self._core.orientation = integer(mode, 'orientation')
-
-    def getOrientation(self) -> Orientation:
-        """See setOrientation."""
-        return Orientation(self._core.orientation)
-
-    def setExtraChannels(self, extraChannels: int) -> None:
-        """Number of maps that computeWithChannels is given, 0 to 16."""
-        self._core.extraChannels = integer(extraChannels, 'extraChannels')
-
-    def getExtraChannels(self) -> int:
-        """See setExtraChannels."""
-        return self._core.extraChannels
-
-    def setBorder(self, border: int) -> None:
-        """One of BORDER_."""
-        self._core.border = integer(border, 'border')
-
-    def getBorder(self) -> Border:
-        """See setBorder."""
-        return Border(self._core.border)
-
     def setSelection(self, quads: ArrayLike) -> None:
         """Restricts the descriptor to chosen quads.
 
         :param quads: Q x 5 int32: level, channel, row, column, bits to keep. Empty: all quads again.
         """
-        self._core.setSelection(as_matrix(quads, 'the selection'))
-
-    def getSelection(self) -> NDArray[np.int32]:
-        """Q x 5 int32, as setSelection takes it; 0 x 5 if there is no selection."""
-        return self._core.getSelection()
+        self._setSelection(as_matrix(quads, 'the selection'))
 
     def save(self, filename: Path) -> None:
         """As write()."""
@@ -267,27 +182,24 @@ class IIBDescriptorExtractor(Detector):
         :raises opencv_iib.error: if it cannot be written whole; an older file is there then as it was. Also for a link that leads to
             no file, a folder, a device or a pipe.
         """
-        self._core.save(fileName)
+        self._save(fileName)
 
     def read(self, fileName: Path) -> None:
         """Reads what write() or C++ wrote."""
         text = text_of(fileName)
         try:
-            self._core.setParameters(text)
+            self._setParameters(text)
         except _core.error as e:
             raise _core.error(f'{os.fsdecode(fileName)} holds no parameters that can be read: {e}') from None
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**super().__getstate__(), '_detector': for_pickle(self._detector)}
-
-    def _parameters(self) -> str:
-        return self._core.parameters()
+        return {**state_of(self), '_detector': for_pickle(self._detector)}
 
     def _restored(self, parameters: str) -> Any:
-        core = _core.Extractor.create(2.0, 4, 15, 0, False, False, 0)
-        core.setParameters(parameters)
+        core = _core.IIBDescriptorExtractor(2.0, 4, 15, 0, False, False, 0)
+        core._setParameters(parameters)
         if self._detector is not None:
-            core.setDetector(core_detector(self._detector))
+            core._setDetector(core_detector(self._detector))
         return core
 
     def __repr__(self) -> str:

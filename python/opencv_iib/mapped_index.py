@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, integers
 from opencv_iib._arrays import ArrayOrArrays, as_arrays, as_codes
-from opencv_iib._core_object import CoreObject
+from opencv_iib._copies import copied
 from opencv_iib.matcher import AT_ONCE, check_padding
 
 
-class MappedIndex(CoreObject):
+@copied
+class MappedIndex(_core.MappedIndex):
     """Binary codes in a folder of files that are mapped into memory, as C++'s cv::iib::MappedIndex writes and reads them.
 
     For more codes than memory should hold, for several processes that search the same codes, and for programs that should
@@ -29,7 +30,7 @@ class MappedIndex(CoreObject):
     def __init__(self, folder: Path) -> None:
         """As :meth:`open`."""
         self._folder = os.fspath(folder)
-        self._core = _core.MappedIndex.open(self._folder)
+        super().__init__(self._folder)
 
     @classmethod
     def open(cls, folder: Path) -> MappedIndex:
@@ -42,55 +43,31 @@ class MappedIndex(CoreObject):
 
         :param levelSizes: bytes of each level, coarse first, as of HierarchicalMatcher; one level is enough.
         """
-        _core.MappedIndex.create(folder, integers(levelSizes, 'levelSizes'))
+        cls._create(folder, integers(levelSizes, 'levelSizes'))
         return cls(folder)
-
-    def levelSizes(self) -> tuple[int, ...]:
-        """Bytes of each level, coarse first."""
-        return tuple(self._core.levelSizes())
-
-    def images(self) -> int:
-        """Images ever added."""
-        return self._core.images()
-
-    def rows(self) -> int:
-        """Rows ever added."""
-        return self._core.rows()
-
-    def segments(self) -> int:
-        """Files of codes, one for each call of :meth:`add`."""
-        return self._core.segments()
-
-    def version(self) -> int:
-        """A number that changes with every commit."""
-        return self._core.version()
 
     def imageOf(self, row: int) -> int:
         """The image of a row."""
-        return self._core.imageOf(integer(row, 'row', 64))
+        return self._imageOf(integer(row, 'row', 64))
 
     def firstRow(self, image: int) -> int:
         """The first row of an image."""
-        return self._core.firstRow(integer(image, 'image', 64))
+        return self._firstRow(integer(image, 'image', 64))
 
     def descriptors(self, image: int) -> NDArray[np.uint8]:
         """A copy of the descriptors of an image."""
-        return self._core.descriptors(integer(image, 'image', 64))
+        return self._descriptorsOf(integer(image, 'image', 64))
 
     def remove(self, images: Sequence[int]) -> None:
         """Hides images from all searches; their codes stay on the disk."""
-        self._core.remove(integers(images, 'images', 64))
-
-    def refresh(self) -> None:
-        """Goes on to the last commit."""
-        self._core.refresh()
+        self._remove(integers(images, 'images', 64))
 
     def add(self, descriptors: ArrayOrArrays) -> None:
         """Adds the descriptors of one image (an array) or of several (a sequence of arrays), and commits them.
 
         They become one file. Add many images at once: searches like files of 100,000 rows and more.
         """
-        self._core.add(as_arrays(descriptors, 'descriptors', as_codes))
+        self._add(as_arrays(descriptors, 'descriptors', as_codes))
 
     def search(self, queryDescriptors: ArrayLike, k: int = 1, segment: Optional[int] = None
                ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
@@ -102,7 +79,7 @@ class MappedIndex(CoreObject):
         """
         queries, k, where = as_codes(queryDescriptors, 'queries'), integer(k, 'k'), -1 if segment is None else integer(segment, 'segment')
         check_padding(len(queries), k, self.rows)
-        parts = [self._core.search(queries[first:first + AT_ONCE], k, where) for first in range(0, max(1, len(queries)), AT_ONCE)]
+        parts = [self._search(queries[first:first + AT_ONCE], k, where) for first in range(0, max(1, len(queries)), AT_ONCE)]
         rows, distances = (np.concatenate(arrays).reshape(-1, k) for arrays in zip(*parts))
         return rows, distances
 
@@ -110,7 +87,7 @@ class MappedIndex(CoreObject):
         return self._folder
 
     def _restored(self, parameters: Any) -> Any:
-        return _core.MappedIndex.open(parameters)
+        return _core.MappedIndex(parameters)
 
     def __repr__(self) -> str:
         return f'{type(self).__name__}({self._folder!r})'

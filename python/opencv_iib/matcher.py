@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, integers, number
 from opencv_iib._arrays import ArrayOrArrays, as_arrays, as_codes, as_matrix
-from opencv_iib._core_object import CoreObject
+from opencv_iib._copies import around, copied
 from opencv_iib._types import match_type
 from opencv_iib.enums import Mode
 
@@ -43,7 +43,8 @@ def _objects(matches: Iterable[Sequence[int]], queries: int, compact: bool) -> M
     return tuple(tuple(row) for row in rows if row or not compact)
 
 
-class HierarchicalMatcher(CoreObject):
+@copied
+class HierarchicalMatcher(_core.HierarchicalMatcher):
     """Matcher of binary descriptors by Hamming distance; names, keywords and matches are those of ``cv2.iib``.
 
     Descriptors are N x bytes uint8 arrays. ``trainDescriptors`` given to a call are searched instead of those added.
@@ -69,10 +70,9 @@ class HierarchicalMatcher(CoreObject):
         :param crossCheck: report only pairs that are among each other's nearest.
         """
         if levelSizes is not None:
-            self._core = _core.Matcher.create(integers(levelSizes, 'levelSizes'), integer(mode, 'mode'),
-                                              number(threshold, 'threshold'), bool(crossCheck))
+            super().__init__(integers(levelSizes, 'levelSizes'), integer(mode, 'mode'), number(threshold, 'threshold'), bool(crossCheck))
         else:
-            self._core = _core.Matcher.create()
+            super().__init__()
             self.setMode(mode)
             self.setCrossCheck(crossCheck)
 
@@ -88,7 +88,7 @@ class HierarchicalMatcher(CoreObject):
 
         For descriptors of any width, as :meth:`create` without level sizes.
         """
-        return cls._of(_core.Matcher.createRecommended())
+        return around(cls, cls._createRecommended())
 
     def match(self, queryDescriptors: ArrayLike, trainDescriptors: Optional[ArrayLike] = None, mask: Optional[ArrayLike] = None,
               masks: Optional[Sequence[ArrayLike]] = None) -> tuple[Any, ...]:
@@ -126,9 +126,9 @@ class HierarchicalMatcher(CoreObject):
         if not distance > 0:
             raise _core.error(f'maxDistance is {distance:g}: it must be more than 0')
         distance = max(distance, .5)  # both are equal codes alone, and OpenCV refuses what is next to nothing
-        matcher, matches = self._on(trainDescriptors), []
+        matcher, matches = self._searched(trainDescriptors), []
         for first, some, allowed in self._parts(queries, _masks(mask if masks is None else masks)):
-            found = matcher.radiusMatch(some, distance, allowed)
+            found = matcher._radiusMatch(some, distance, allowed)
             matches += (found + [first, 0, 0, 0]).tolist()
         return _objects(matches, len(queries), compactResult)
 
@@ -139,16 +139,16 @@ class HierarchicalMatcher(CoreObject):
         :return: indices and distances, queries x k int32, -1 where there is none; among the descriptors added, the
             number of the image as well.
         """
-        queries, k, matcher = as_codes(queryDescriptors, 'descriptors'), integer(k, 'k'), self._on(trainDescriptors)
-        check_padding(len(queries), k, matcher.rows)
-        parts = [matcher.knnMatchArrays(some, k, allowed)
+        queries, k, matcher = as_codes(queryDescriptors, 'descriptors'), integer(k, 'k'), self._searched(trainDescriptors)
+        check_padding(len(queries), k, matcher._countRows)
+        parts = [matcher._knnMatchArrays(some, k, allowed)
                  for _, some, allowed in self._parts(queries, _masks(mask if masks is None else masks))]
         found = tuple(np.concatenate(arrays) for arrays in zip(*parts)) if len(parts) > 1 else parts[0]
         return found if trainDescriptors is None else found[:2]
 
-    def _on(self, descriptors: Optional[ArrayLike]) -> _core.Matcher:
+    def _searched(self, descriptors: Optional[ArrayLike]) -> _core.HierarchicalMatcher:
         """What searches the descriptors of a call, or those added if there are none."""
-        return self._core if descriptors is None else self._core.on(as_codes(descriptors, 'descriptors'))
+        return self if descriptors is None else self._on(as_codes(descriptors, 'descriptors'))
 
     def _parts(self, queries: np.ndarray, masks: list[np.ndarray]) -> Iterator[tuple[int, np.ndarray, list[np.ndarray]]]:
         """Queries in parts, each with the number of its first and its masks: Ctrl-C acts between two.
@@ -163,95 +163,32 @@ class HierarchicalMatcher(CoreObject):
 
     def add(self, descriptors: ArrayOrArrays) -> None:
         """Adds the descriptors of one image (an array) or of several (a sequence of arrays); they are copied."""
-        self._core.add(as_arrays(descriptors, 'descriptors', as_codes))
-
-    def clear(self) -> None:
-        """Forgets all train descriptors."""
-        self._core.clear()
-
-    def empty(self) -> bool:
-        """True without train descriptors."""
-        return self._core.empty()
-
-    def train(self) -> None:
-        """Nothing: the index is ready after add()."""
-
-    def isMaskSupported(self) -> bool:
-        """True."""
-        return True
-
-    def getTrainDescriptors(self) -> tuple[NDArray[np.uint8], ...]:
-        """Copies of the descriptors added, an array an image."""
-        return tuple(self._core.getTrainDescriptors())
+        self._add(as_arrays(descriptors, 'descriptors', as_codes))
 
     def clone(self, emptyTrainData: bool = False) -> HierarchicalMatcher:
         """A copy; with emptyTrainData, of the parameters alone."""
-        return self._of(self._core.clone(bool(emptyTrainData)))
-
-    def levelSizes(self) -> tuple[int, ...]:
-        """Bytes of each level, coarse first; empty while a matcher created without them has seen no descriptors."""
-        return tuple(self._core.levelSizes())
-
-    def setMode(self, mode: int) -> None:
-        """EXACT, THRESHOLD or ADAPTIVE."""
-        self._core.mode = integer(mode, 'mode')
-
-    def getMode(self) -> Mode:
-        """See setMode."""
-        return Mode(self._core.mode)
+        return around(type(self), self._clone(bool(emptyTrainData)))
 
     def setThresholds(self, thresholds: Sequence[float]) -> None:
         """Of THRESHOLD, 0 to 1: one for every level but the last, or a single one for all."""
-        self._core.setThresholds([number(threshold, 'a threshold') for threshold in thresholds])
-
-    def getThresholds(self) -> tuple[float, ...]:
-        """Of THRESHOLD, one a level."""
-        return tuple(self._core.getThresholds())
-
-    def setCrossCheck(self, crossCheck: bool) -> None:
-        """Whether to report only pairs that are among each other's nearest."""
-        self._core.crossCheck = bool(crossCheck)
-
-    def getCrossCheck(self) -> bool:
-        """See setCrossCheck."""
-        return self._core.crossCheck
-
-    def setMaxRatio(self, maxRatio: float) -> None:
-        """Ratio test of match, knnMatch and knnMatchArrays: a query keeps its matches only if its least distance is less
-        than maxRatio times its second least.
-
-        :param maxRatio: in (0, 1]; 1 turns the test off. An exact tie does not pass: 9 and 10 bits do not at .9.
-        """
-        self._core.maxRatio = number(maxRatio, 'maxRatio')
-
-    def getMaxRatio(self) -> float:
-        """See setMaxRatio."""
-        return self._core.maxRatio
-
-    def matchCost(self) -> float:
-        """The paper's MC: bits compared / bits brute force would compare, since resetCost(); 0 before any call."""
-        return self._core.matchCost()
-
-    def resetCost(self) -> None:
-        """Begins a new count for matchCost()."""
-        self._core.resetCost()
+        self._setThresholds([number(threshold, 'a threshold') for threshold in thresholds])
 
     def saveIndex(self, filename: Path) -> None:
         """Writes level sizes, parameters and all train descriptors to a binary file, the same as C++ writes."""
-        self._core.saveIndex(filename)
+        self._saveIndex(filename)
 
     @classmethod
     def loadIndex(cls, filename: Path) -> HierarchicalMatcher:
         """Reads what saveIndex wrote, here or in C++."""
-        return cls._of(_core.Matcher.loadIndex(filename))
+        return around(cls, cls._loadIndex(filename))
 
     def _parameters(self) -> tuple[str, tuple[NDArray[np.uint8], ...]]:
-        return self._core.parameters(), self.getTrainDescriptors()
+        return self._parametersAsText(), self.getTrainDescriptors()
 
     def _restored(self, parameters: tuple[str, Sequence[NDArray[np.uint8]]]) -> Any:
-        core = _core.Matcher.create()
-        core.setParameters(parameters[0])
-        core.add(list(parameters[1]))
+        core = _core.HierarchicalMatcher()
+        core._setParameters(parameters[0])
+        core._add(list(parameters[1]))
         return core
 
     def __repr__(self) -> str:

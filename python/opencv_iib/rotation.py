@@ -49,11 +49,11 @@ def matchRotated(image1: Any, image2: Any, extractor: IIBDescriptorExtractor, ma
         if not isinstance(given, kind):
             raise TypeError(f'{name}: an object of {kind.__name__} is needed, not {type(given).__name__}')
     images, rotation, none = (as_image(image1), as_image(image2)), number(rotation, 'rotation'), as_rows([])
-    _core.matchRotated(images[0], none, images[1], none, extractor._core, matcher._core, rotation)  # mistakes, before it detects
+    _core.matchRotated(images[0], none, images[1], none, extractor, matcher, rotation)  # mistakes, before it detects
     points = [extractor.detect(image) if given is None else given
               for image, given in zip(images, (keypoints1, keypoints2))]
     first, second = map(as_rows, points)
-    rotation, first, second, matches = _core.matchRotated(images[0], first, images[1], second, extractor._core, matcher._core, rotation)
+    rotation, first, second, matches = _core.matchRotated(images[0], first, images[1], second, extractor, matcher, rotation)
     found = [described if isinstance(given, np.ndarray) else array_to_keypoints(described)
              for given, described in zip(points, (first, second))]
     if isinstance(keypoints1, np.ndarray):

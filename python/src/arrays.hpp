@@ -4,7 +4,6 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -74,25 +73,6 @@ typedef nb::call_guard<nb::gil_scoped_release> WithoutGil;
 
 namespace nanobind {
 namespace detail {
-
-//! OpenCV's pointers are shared ones.
-template <typename T> struct type_caster<cv::Ptr<T>>
-{
-    typedef make_caster<std::shared_ptr<T>> Shared;
-    NB_TYPE_CASTER(cv::Ptr<T>, make_caster<T>::Name)
-
-    bool from_python(handle source, uint32_t flags, cleanup_list* cleanup) noexcept
-    {
-        Shared shared;
-        const bool known = shared.from_python(source, flags, cleanup);
-        value = cv::Ptr<T>(shared.value);
-        return known;
-    }
-    static handle from_cpp(const cv::Ptr<T>& pointer, rv_policy policy, cleanup_list* cleanup) noexcept
-    {
-        return Shared::from_cpp(static_cast<const std::shared_ptr<T>&>(pointer), policy, cleanup);
-    }
-};
 
 //! Of what read() and matrixOf() are for; the array lives as long as the call.
 template <typename T> struct array_caster

@@ -5,10 +5,9 @@
 
 namespace iib_python {
 
-// The classes and functions of opencv_iib._core: the C++ objects with arrays and plain values for arguments and results. What
-// users see, with names, keywords and documentation, is opencv_iib/descriptor.py, detectors.py, geometry.py, mapped_index.py,
-// matcher.py, refinement.py and rotation.py, which also check what they are given: methods of nanobind's (3.1) have no
-// inspect.signature, show 2.2f as 2.200000047683716 and tell mistakes by C++ types.
+// The classes and functions of opencv_iib._core. Methods that users call have OpenCV's names, keywords and a docstring here, which the
+// stub takes from here, too; opencv_iib/_methods.py makes functions of Python of them. Classes of opencv_iib extend these by what
+// takes arrays, files and objects of any cv2, through methods whose names begin with an underscore.
 void bindDetectors(nanobind::module_& m);  // first: it has the base class of Extractor
 void bindExtractor(nanobind::module_& m);
 void bindMatcher(nanobind::module_& m);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "arrays.hpp"
 #include "bindings.hpp"
+#include "held.hpp"
 
 #include "opencv2/iib.hpp"
 
@@ -44,44 +44,92 @@ private:
 };
 
 //! @param mask empty: everywhere.
-std::vector<cv::KeyPoint> detect(cv::Feature2D& self, const cv::Mat& image, const cv::Mat& mask)
+std::vector<cv::KeyPoint> detect(const Detector& self, const cv::Mat& image, const cv::Mat& mask)
 {
     std::vector<cv::KeyPoint> keypoints;
     if (!image.empty())
-        self.detect(image, keypoints, mask);
+        self->detect(image, keypoints, mask);
     return keypoints;
 }
 
-std::shared_ptr<cv::Feature2D> foreignDetector(nb::callable function, const std::string& name)
+// Of arrays and lists of them, as objects of cv2 if it is there.
+nb::object detected(nb::handle self, nb::handle image, nb::handle mask)
 {
-    return std::make_shared<ForeignDetector>(function, name);
+    return nb::module_::import_("opencv_iib.detectors").attr("detected")(self, image, mask);
 }
+
+const char* const DETECT = "def detect(self, image: numpy.typing.ArrayLike, "
+                           "mask: typing.Optional[numpy.typing.ArrayLike] = None) -> tuple[typing.Any, ...]";
+
+const char* const DETECT_DOC =
+        R"(Keypoints, as cv2.KeyPoint if cv2 is there; of a list of images, such a tuple for each.
+
+:param mask: H x W uint8, 0 where nothing is to be found; a list with a list of images.)";
+
+void newHessian(HeldDetector<Hessian>* self, int maxFeatures, float threshold, int scales, float sigma,
+        float normalizationSigma, int workingSize)
+{
+    new (self) HeldDetector<Hessian>(
+            Hessian::create(maxFeatures, threshold, scales, sigma, normalizationSigma, workingSize));
+}
+
+const char* const NEW_HESSIAN =
+        "def __init__(self, maxFeatures: int = 1000, threshold: float = 0.0, scales: int = 5, "
+        "sigma: float = 2.2, normalizationSigma: float = 5.0, workingSize: int = 1024) -> None";
+
+const char* const NEW_HESSIAN_DOC = R"(Creates a detector.
+
+:param maxFeatures: the strongest that are kept; 0 keeps all.
+:param threshold: smallest response, 0 or more.
+:param scales: number of scales, 1 to 8, each sqrt(2) times the one before.
+:param sigma: of the smallest scale in pixels of the (reduced) image, 1.5 to 8.
+:param normalizationSigma: of the local normalization's Gaussian in pixels of the (reduced) image, 2 to 256.
+:param workingSize: of images, pixels of the longer side, 64 or more; larger ones are reduced by a whole factor
+    before points are found, which are in the image's own pixels all the same. 0 never reduces.)";
 
 }  // namespace
 
 void bindDetectors(nb::module_& m)
 {
-    nb::class_<cv::Feature2D>(m, "Detector")
-            .def_static("foreign", &foreignDetector)
-            .def("detect", &detect, WithoutGil())
-            .def("descriptorSize", &cv::Feature2D::descriptorSize)
-            .def("descriptorType", &cv::Feature2D::descriptorType)
-            .def("defaultNorm", &cv::Feature2D::defaultNorm)
-            .def("empty", &cv::Feature2D::empty)
-            .def("getDefaultName",
-                    [](const cv::Feature2D& self) { return std::string(self.getDefaultName()); });
-    nb::class_<Normalized, cv::Feature2D>(m, "NormalizedDetector")
-            .def_static("create", &Normalized::create)
-            .def_prop_rw("sigma", &Normalized::getSigma, &Normalized::setSigma);
-    nb::class_<Hessian, cv::Feature2D>(m, "HessianDetector")
-            .def_static("create", &Hessian::create)
-            .def_prop_rw("maxFeatures", &Hessian::getMaxFeatures, &Hessian::setMaxFeatures)
-            .def_prop_rw("threshold", &Hessian::getThreshold, &Hessian::setThreshold)
-            .def_prop_rw("scales", &Hessian::getScales, &Hessian::setScales)
-            .def_prop_rw("sigma", &Hessian::getSigma, &Hessian::setSigma)
-            .def_prop_rw(
-                    "normalizationSigma", &Hessian::getNormalizationSigma, &Hessian::setNormalizationSigma)
-            .def_prop_rw("workingSize", &Hessian::getWorkingSize, &Hessian::setWorkingSize);
+    nb::class_<Detector> any(
+            m, "Detector", "What finds keypoints: the base of the detectors and of the descriptor.");
+    any.def_static("_foreign",
+               [](nb::callable function, const std::string& name) {
+                   return Detector{cv::makePtr<ForeignDetector>(function, name)};
+               })
+            .def("_detect", &detect, WithoutGil())
+            .def("detect", &detected, nb::arg().none(), nb::arg().none(), nb::sig(DETECT), DETECT_DOC)
+            .def(
+                    "getDefaultName",
+                    [](const Detector& self) { return std::string(self->getDefaultName()); },
+                    "The name of its parameters in files, such as Feature2D.IIB.");
+    method(any, "descriptorSize", &cv::Feature2D::descriptorSize,
+            "Bytes of a descriptor; 0 of a detector that describes nothing.");
+    method(any, "empty", &cv::Feature2D::empty, "False: it is always ready.");
+
+    nb::class_<HeldDetector<Normalized>, Detector> normalized(m, "NormalizedDetector");
+    sharing(normalized);
+    normalized.def("__init__", [](HeldDetector<Normalized>* self, const Detector& detector, float sigma) {
+        new (self) HeldDetector<Normalized>(Normalized::create(detector.held, sigma));
+    });
+    property(normalized, "Sigma", &Normalized::getSigma, &Normalized::setSigma,
+            "Of the Gaussian filter in pixels, 1 to 256.");
+
+    nb::class_<HeldDetector<Hessian>, Detector> hessian(m, "HessianDetector");
+    sharing(hessian);
+    hessian.def("__init__", &newHessian, nb::sig(NEW_HESSIAN), NEW_HESSIAN_DOC);
+    property(hessian, "MaxFeatures", &Hessian::getMaxFeatures, &Hessian::setMaxFeatures,
+            "The strongest that are kept; 0 keeps all.");
+    property(hessian, "Threshold", &Hessian::getThreshold, &Hessian::setThreshold,
+            "Smallest response, 0 or more.");
+    property(hessian, "Scales", &Hessian::getScales, &Hessian::setScales,
+            "Number of scales, 1 to 8, each sqrt(2) times the one before.");
+    property(hessian, "Sigma", &Hessian::getSigma, &Hessian::setSigma,
+            "Of the smallest scale in pixels, 1.5 to 8.");
+    property(hessian, "NormalizationSigma", &Hessian::getNormalizationSigma, &Hessian::setNormalizationSigma,
+            "Of the local normalization's Gaussian in pixels, 2 to 256.");
+    property(hessian, "WorkingSize", &Hessian::getWorkingSize, &Hessian::setWorkingSize,
+            "Of images, pixels of the longer side, 64 or more; larger ones are reduced. 0 never reduces.");
 }
 
 }  // namespace iib_python

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "arrays.hpp"
 #include "bindings.hpp"
+#include "held.hpp"
 
 #include "opencv2/iib.hpp"
 
@@ -10,18 +10,19 @@ namespace iib_python {
 namespace {
 
 typedef cv::iib::IIBDescriptorExtractor Extractor;
+typedef HeldDetector<Extractor> Self;
 
 // The descriptors, and which keypoints were kept if not all were.
-std::tuple<cv::Mat, std::optional<cv::Mat>> compute(Extractor& self, const cv::Mat& image,
+std::tuple<cv::Mat, std::optional<cv::Mat>> compute(const Self& self, const cv::Mat& image,
         std::vector<cv::KeyPoint> keypoints, const std::vector<cv::Mat>& extraChannels)
 {
     const size_t given = keypoints.size();
     for (size_t i = 0; i < given; i++)
         keypoints[i].class_id = (int)i;
     cv::Mat descriptors;
-    self.compute(image, extraChannels, keypoints, descriptors);
+    self->compute(image, extraChannels, keypoints, descriptors);
     if (descriptors.empty())
-        descriptors.create(0, self.descriptorSize(), CV_8U);
+        descriptors.create(0, self->descriptorSize(), CV_8U);
     if (keypoints.size() == given)
         return {descriptors, std::nullopt};
     cv::Mat kept((int)keypoints.size(), 1, CV_32S);
@@ -41,42 +42,72 @@ cv::Ptr<Extractor> withoutDetector(const Extractor& self)
     return result;
 }
 
+void create(Self* self, float scaleFactor, int granularity, int channels, int mapping, bool overlap,
+        bool useOrientation, int extraChannels)
+{
+    new (self) Self(Extractor::create(
+            scaleFactor, granularity, channels, mapping, overlap, useOrientation, extraChannels));
+}
+
+cv::Mat getSelection(const Self& self)
+{
+    const cv::Mat quads = self->getSelection();
+    return quads.empty() ? cv::Mat(0, 5, CV_32S) : quads;
+}
+
 }  // namespace
 
 void bindExtractor(nb::module_& m)
 {
-    nb::class_<Extractor, cv::Feature2D>(m, "Extractor")
-            .def_static("create", &Extractor::create)
-            .def_static("createPreset", &Extractor::createPreset)
-            .def_static("createFor", &Extractor::createFor)
-            .def_static("scaleFactorFor", nb::overload_cast<const cv::String&>(&Extractor::scaleFactorFor))
-            .def_static("scaleFactorFor",
-                    nb::overload_cast<const cv::Ptr<cv::Feature2D>&>(&Extractor::scaleFactorFor))
-            .def("compute", &compute, WithoutGil())
-            .def("setDetector", &Extractor::setDetector)
-            .def("levelSizes", &Extractor::levelSizes)
-            .def_prop_rw("scaleFactor", &Extractor::getScaleFactor, &Extractor::setScaleFactor)
-            .def_prop_rw("granularity", &Extractor::getGranularity, &Extractor::setGranularity)
-            .def_prop_rw("channels", &Extractor::getChannels, &Extractor::setChannels)
-            .def_prop_rw("mapping", &Extractor::getMapping, &Extractor::setMapping)
-            .def_prop_rw("overlap", &Extractor::getOverlap, &Extractor::setOverlap)
-            .def_prop_rw("useOrientation", &Extractor::getUseOrientation, &Extractor::setUseOrientation)
-            .def_prop_rw("orientation", &Extractor::getOrientation, &Extractor::setOrientation)
-            .def_prop_rw("extraChannels", &Extractor::getExtraChannels, &Extractor::setExtraChannels)
-            .def_prop_rw("border", &Extractor::getBorder, &Extractor::setBorder)
-            .def("setSelection", [](Extractor& self, const cv::Mat& quads) { self.setSelection(quads); })
-            .def("getSelection",
-                    [](const Extractor& self) {
-                        const cv::Mat quads = self.getSelection();
-                        return quads.empty() ? cv::Mat(0, 5, CV_32S) : quads;
+    nb::class_<Self, Detector> cls(m, "IIBDescriptorExtractor");
+    sharing(cls);
+    cls.def("__init__", &create)
+            .def_static("_createPreset",
+                    [](int preset, float scaleFactor) {
+                        return Self(Extractor::createPreset(preset, scaleFactor));
                     })
+            .def_static("_createFor",
+                    [](const Detector& detector, int preset) {
+                        return Self(Extractor::createFor(detector.held, preset));
+                    })
+            .def_static("_scaleFactorFor", nb::overload_cast<const cv::String&>(&Extractor::scaleFactorFor))
+            .def_static("_scaleFactorFor",
+                    [](const Detector& detector) { return Extractor::scaleFactorFor(detector.held); })
+            .def("_compute", &compute, WithoutGil())
+            .def("_setDetector",
+                    [](Self& self, const Detector& detector) { self->setDetector(detector.held); })
+            .def("_setSelection", [](Self& self, const cv::Mat& quads) { self->setSelection(quads); })
+            .def("getSelection", &getSelection,
+                    nb::sig("def getSelection(self) -> numpy.typing.NDArray[numpy.int32]"),
+                    "Q x 5 int32, as setSelection takes it; 0 x 5 if there is no selection.")
             .def(
-                    "save",
-                    [](const Extractor& self, nb::object file) { withoutDetector(self)->save(pathOf(file)); },
+                    "_save",
+                    [](const Self& self, nb::object file) { withoutDetector(*self)->save(pathOf(file)); },
                     nb::arg().none())
-            .def("parameters", [](const Extractor& self) { return parametersOf(*withoutDetector(self)); })
-            .def("setParameters",
-                    [](Extractor& self, const std::string& text) { setParameters(self, text); });
+            .def("_parameters", [](const Self& self) { return parametersOf(*withoutDetector(*self)); })
+            .def("_setParameters", [](Self& self, const std::string& text) { setParameters(*self, text); });
+    method(cls, "levelSizes", &Extractor::levelSizes,
+            "Bytes of each level, coarse first; their sum is descriptorSize().");
+    method(cls, "descriptorType", &Extractor::descriptorType, "CV_8U, which is 0.");
+    method(cls, "defaultNorm", &Extractor::defaultNorm, "NORM_HAMMING, which is 6.");
+    property(cls, "ScaleFactor", &Extractor::getScaleFactor, &Extractor::setScaleFactor,
+            "Side of the described square in units of a keypoint's size, > 0.");
+    property(cls, "Granularity", &Extractor::getGranularity, &Extractor::setGranularity,
+            "Number of levels, 1 to 6. Another one ends a selection, as other channels, mapping or overlap "
+            "do.");
+    property(cls, "Channels", &Extractor::getChannels, &Extractor::setChannels,
+            "A sum of CHANNEL_ values; may be 0 if there are extra channels.", "Channel");
+    property(cls, "Mapping", &Extractor::getMapping, &Extractor::setMapping, "One of MAPPING_.", "Mapping");
+    property(cls, "Overlap", &Extractor::getOverlap, &Extractor::setOverlap,
+            "Whether the windows of 2 x 2 cells slide by one cell instead of two.");
+    property(cls, "UseOrientation", &Extractor::getUseOrientation, &Extractor::setUseOrientation,
+            "True: ORIENTATION_KEYPOINT, False: ORIENTATION_NONE. What is got: whether it is another than "
+            "ORIENTATION_NONE.");
+    property(cls, "Orientation", &Extractor::getOrientation, &Extractor::setOrientation,
+            "How the described squares are turned: one of ORIENTATION_.", "Orientation", "mode");
+    property(cls, "ExtraChannels", &Extractor::getExtraChannels, &Extractor::setExtraChannels,
+            "Number of maps that computeWithChannels is given, 0 to 16.");
+    property(cls, "Border", &Extractor::getBorder, &Extractor::setBorder, "One of BORDER_.", "Border");
 }
 
 }  // namespace iib_python

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "arrays.hpp"
 #include "bindings.hpp"
+#include "held.hpp"
 
 #include "opencv2/iib.hpp"
 #include "opencv2/iib_geometry.hpp"
@@ -15,11 +15,12 @@ typedef std::vector<cv::DMatch> Matches;
 
 // Rotation, both images' keypoints, and matches.
 std::tuple<double, KeyPoints, KeyPoints, Matches> matchRotated(const cv::Mat& image1, KeyPoints first,
-        const cv::Mat& image2, KeyPoints second, const cv::Ptr<cv::iib::IIB>& extractor,
-        const cv::Ptr<cv::iib::HierarchicalMatcher>& matcher, double rotation)
+        const cv::Mat& image2, KeyPoints second, const HeldDetector<cv::iib::IIB>& extractor,
+        const Held<cv::iib::HierarchicalMatcher>& matcher, double rotation)
 {
     Matches matches;
-    rotation = cv::iib::matchRotated(image1, first, image2, second, extractor, matcher, matches, rotation);
+    rotation = cv::iib::matchRotated(image1, first, image2, second, extractor.held.staticCast<cv::iib::IIB>(),
+            matcher.held, matches, rotation);
     return {rotation, first, second, matches};
 }
 
@@ -61,14 +62,14 @@ auto findRelativePose(const cv::Mat& points1, const cv::Mat& points2, const cv::
             std::string(reason));
 }
 
-typedef cv::iib::ImageAligner Aligner;
+typedef Held<cv::iib::ImageAligner> Aligner;
 
 // Whether they show the same, transform, deviations of the corners, matches that agree; and why not.
 auto align(const Aligner& aligner, const cv::Mat& image, const cv::Mat& mask)
 {
     cv::Mat transform, error, matches;
     cv::String reason;
-    const bool found = aligner.align(image, transform, error, matches, &reason, mask);
+    const bool found = aligner->align(image, transform, error, matches, &reason, mask);
     return std::make_tuple(std::make_tuple(found, onlyIf(found, transform), onlyIf(found, error), matches),
             std::string(reason));
 }
@@ -93,7 +94,7 @@ void bindFunctions(nb::module_& m)
             .def_static(
                     "create",
                     [](const cv::Mat& reference, int model, const cv::Mat& mask) {
-                        return Aligner::create(reference, model, mask);
+                        return Aligner{cv::iib::ImageAligner::create(reference, model, mask)};
                     },
                     WithoutGil())
             .def("align", &align, WithoutGil());

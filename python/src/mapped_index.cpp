@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "arrays.hpp"
 #include "bindings.hpp"
+#include "held.hpp"
 
 #include "opencv2/iib_index.hpp"
 
@@ -10,6 +10,7 @@ namespace iib_python {
 namespace {
 
 typedef cv::iib::MappedIndex Index;
+typedef Held<Index> Self;
 
 template <typename T> nb::object arrayOf(std::vector<T>&& values)
 {
@@ -19,13 +20,13 @@ template <typename T> nb::object arrayOf(std::vector<T>&& values)
 }
 
 //! Rows and distances, one query after another.
-nb::tuple search(const Index& self, const cv::Mat& queries, int k, int segment)
+nb::tuple search(const Self& self, const cv::Mat& queries, int k, int segment)
 {
     std::vector<int64> rows;
     std::vector<int> distances;
     {
         nb::gil_scoped_release release;
-        self.knnSearch(queries, k, rows, distances, segment);
+        self->knnSearch(queries, k, rows, distances, segment);
     }
     return nb::make_tuple(
             arrayOf(std::vector<int64_t>(rows.begin(), rows.end())), arrayOf(std::move(distances)));
@@ -35,31 +36,36 @@ nb::tuple search(const Index& self, const cv::Mat& queries, int k, int segment)
 
 void bindMappedIndex(nb::module_& m)
 {
-    nb::class_<Index>(m, "MappedIndex")
-            .def_static("create",
+    nb::class_<Self> cls(m, "MappedIndex");
+    sharing(cls);
+    cls.def("__init__",
+               [](Self* self, nb::object folder) {
+                   const std::string name = pathOf(folder);
+                   nb::gil_scoped_release release;
+                   new (self) Self{Index::open(name)};
+               })
+            .def_static(
+                    "_create",
                     [](nb::object folder, const std::vector<int>& levelSizes) {
                         Index::create(pathOf(folder), levelSizes);
-                    })
-            .def_static("open",
-                    [](nb::object folder) {
-                        const std::string name = pathOf(folder);
-                        nb::gil_scoped_release release;
-                        return Index::open(name);
-                    })
-            .def("levelSizes", &Index::levelSizes)
-            .def("images", &Index::images)
-            .def("rows", &Index::rows)
-            .def("segments", &Index::segments)
-            .def("version", &Index::version)
-            .def("imageOf", &Index::imageOf)
-            .def("firstRow", &Index::firstRow)
-            .def("descriptors", &Index::descriptors)
+                    },
+                    nb::arg().none(), nb::arg())
+            .def("_imageOf", [](const Self& self, int64_t row) { return self->imageOf(row); })
+            .def("_firstRow", [](const Self& self, int64_t image) { return self->firstRow(image); })
+            .def("_descriptorsOf", [](const Self& self, int64_t image) { return self->descriptors(image); })
             .def(
-                    "add", [](Index& self, const std::vector<cv::Mat>& images) { self.add(images); },
+                    "_add", [](Self& self, const std::vector<cv::Mat>& images) { self->add(images); },
                     WithoutGil())
-            .def("remove", &Index::remove, WithoutGil())
-            .def("refresh", &Index::refresh)
-            .def("search", &search);
+            .def(
+                    "_remove", [](Self& self, const std::vector<int64>& images) { self->remove(images); },
+                    WithoutGil())
+            .def("_search", &search);
+    method(cls, "refresh", &Index::refresh, "Goes on to the last commit.");
+    method(cls, "levelSizes", &Index::levelSizes, "Bytes of each level, coarse first.");
+    method(cls, "images", &Index::images, "Images ever added.");
+    method(cls, "rows", &Index::rows, "Rows ever added.");
+    method(cls, "segments", &Index::segments, "Files of codes, one for each call of add.");
+    method(cls, "version", &Index::version, "A number that changes with every commit.");
 }
 
 }  // namespace iib_python

@@ -74,6 +74,18 @@ class Names(unittest.TestCase):
         self.assertEqual([name for name, value in public.items()
                           if callable(value) and not (value.__doc__ or '').strip()], [])
 
+    def test_methods_have_signatures_and_docstrings_wherever_they_are_written(self):
+        for name in CLASSES:
+            owner = getattr(opencv_iib, name)
+            for member, method in inspect.getmembers(owner, inspect.isroutine):
+                if not member.startswith('_'):
+                    with self.subTest(owner=name, member=member):
+                        self.assertTrue(method.__doc__)
+                        self.assertTrue(inspect.signature(method))
+        shown = pydoc.plain(pydoc.render_doc(opencv_iib.HessianDetector))
+        self.assertRegex(shown, r"HessianDetector\(maxFeatures: '?int'? = 1000, threshold: '?float'? = 0.0, scales: '?int'? = 5, sigma: '?float'? = 2.2, ")
+        self.assertRegex(shown, r"setSigma\(self, sigma: '?float'?\) -> '?None'?\n \|  +Of the smallest scale in pixels, 1.5 to 8.\n")
+
     def test_help_and_star_import_see_the_classes(self):
         names = {}
         exec('from opencv_iib import *', names)

@@ -12,13 +12,15 @@ from support import REPOSITORY, optional
 
 mypy = optional('mypy')
 
-# What nanobind's functions and classes are not, of what stubtest looks for; lru_cache; and tuples with a reason beside them.
+# What nanobind's functions and classes are not, of what stubtest looks for; lru_cache; copies, which a decorator adds; and tuples with a
+# reason beside them.
 UNREADABLE = re.compile(r'opencv_iib\._core\.\S+ (is not a function|is inconsistent, stub is a staticmethod but runtime is '
                         r'not|is inconsistent, metaclass differs|is a disjoint base at runtime|'
                         r'is inconsistent, stub does not have \*args parameter "args"|'
                         r'is inconsistent, stub does not have \*\*kwargs parameter "kwargs")'
                         r'|opencv_iib\.(_types\._cv2|colmap\.pipeline\.(_features|_matcher)|localization\.run\._common_camera) is inconsistent'
-                        r'|opencv_iib\.localization\.localizer\.(Camera|(Found|No)?Location) is inconsistent, metaclass differs'
+                        r'|opencv_iib\.(\w+|localization\.localizer)\.\w+ is inconsistent, metaclass differs'
+                        r'|opencv_iib\.\w+\.\w+\.__(deep)?copy__ is not present in stub'
                         r'|opencv_iib\.geometry\.No(Pose|Alignment) is a disjoint base at runtime')
 
 

@@ -1,15 +1,32 @@
 #!/usr/bin/env python3
-"""Prints the Python package's reference as a page of Markdown, from its sources: python_api.py"""
+"""Prints the Python package's reference as a page of Markdown, from its sources: python_api.py
+
+What classes have from the extension is there where the package is installed, with the stub that its build has made.
+"""
 import ast
+import importlib.util
 import pathlib
 
 PACKAGE = pathlib.Path(__file__).resolve().parents[2] / 'python/opencv_iib'
+INSTALLED = importlib.util.find_spec('opencv_iib')
+STUB = {node.name: node for node in ast.parse(pathlib.Path(INSTALLED.origin).with_name('_core.pyi').read_text(encoding='utf-8')).body
+        if isinstance(node, ast.ClassDef)} if INSTALLED else {}
 
 
 def signature(node, owner):
     if isinstance(node, ast.ClassDef):
         return 'class %s%s' % (node.name, '(%s)' % ', '.join(map(ast.unparse, node.bases)) if node.bases else '')
     return '%s%s(%s)%s' % (owner, node.name, ast.unparse(node.args), ' -> ' + ast.unparse(node.returns) if node.returns else '')
+
+
+def methods(node):
+    """Of a class: its own, and the documented ones of the extension's class that it extends."""
+    found = [member for member in node.body if isinstance(member, ast.FunctionDef)]
+    for base in map(ast.unparse, node.bases):
+        if base.removeprefix('_core.') in STUB:
+            known = {member.name for member in found}
+            found += [member for member in methods(STUB[base.removeprefix('_core.')]) if member.name not in known and ast.get_docstring(member)]
+    return found
 
 
 def entries(nodes, owner=''):
@@ -23,7 +40,7 @@ def entries(nodes, owner=''):
             print('```text\n%s\n\n%s\n```\n' % ('\n'.join(heads or [signature(node, owner)]), ast.get_docstring(node) or ''))
             heads = []
             if isinstance(node, ast.ClassDef):
-                entries((member for member in node.body if isinstance(member, ast.FunctionDef)), node.name + '.')
+                entries(methods(node), node.name + '.')
 
 
 def main():

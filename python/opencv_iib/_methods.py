@@ -1,0 +1,36 @@
+"""The documented methods of the extension, which users call, as functions of Python.
+
+Methods of nanobind's have no inspect.signature, and tell mistakes by C++ types. Undocumented ones are for this package alone.
+"""
+from __future__ import annotations
+
+import ast
+from typing import Any
+
+from opencv_iib import _core, enums
+from opencv_iib._arguments import integer, number
+
+# What is done with an argument, by its annotation; others are passed on as they are. Numbers that are returned become values of enums.
+CHECKS = {'int': 'integer({0}, {0!r})', 'float': 'number({0}, {0!r})', 'bool': 'bool({0})'}
+
+
+def function_of(method: Any, signature: str, doc: str) -> Any:
+    """Of a signature as in ``def setSigma(self, sigma: float) -> None``."""
+    function: Any = ast.parse(signature + ': ...').body[0]
+    passed = [CHECKS.get(ast.unparse(each.annotation) if each.annotation else '', '{0}').format(each.arg) for each in function.args.args]
+    call = f'method({", ".join(passed)})'
+    if ast.unparse(function.returns).startswith('opencv_iib.enums.'):
+        call = f'{ast.unparse(function.returns)[len("opencv_iib."):]}({call})'
+    source = f'from __future__ import annotations\n{signature}:\n    return {call}'
+    names: dict[str, Any] = {'method': method, 'integer': integer, 'number': number, 'enums': enums}
+    exec(compile(source, method.__module__, 'exec'), names)
+    made = names[function.name]
+    made.__doc__, made.__module__, made.__qualname__ = doc, method.__module__, method.__qualname__
+    return made
+
+
+for _owner in [value for value in vars(_core).values() if isinstance(value, type)]:
+    for _name, _method in list(vars(_owner).items()):
+        for _signature, _doc, _ in _method.__nb_signature__ if type(_method).__name__ == 'nb_method' else ():
+            if _doc:
+                setattr(_owner, _name, function_of(_method, _signature, _doc))
