@@ -127,7 +127,7 @@ def _parser() -> _Parser:
     command.add_argument('--picture', help='picture to write')
     command.add_argument('--camera', dest='cameras', action='append', default=[], metavar=CAMERA, type=_camera,
                          help="find the pose too, with COLMAP's name and parameters of the camera; twice for two cameras")
-    _features(command, 4000)
+    _features(command, FeatureOptions.points)
 
     command = add('align', _align, 'lay images onto a reference',
                   'REFERENCE IMAGES... --out FOLDER', 'noon.jpg webcam/ --out aligned --crop')

@@ -129,7 +129,7 @@ class _Hdf5(contextlib.AbstractContextManager[Any]):
         self._file.close()
 
 
-def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera] = None, options: FeatureOptions = FeatureOptions(points=4000),
+def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera] = None, options: FeatureOptions = FeatureOptions(),
                workers: Optional[int] = None, log: Callable[[str], None] = note) -> tuple[int, int]:
     """Matches pairs of a list as match_images does, and describes each image once. Each pair is written when it is done: a later call goes on
     from there, and does what is new or was changed, or was matched with other options.

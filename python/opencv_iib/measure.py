@@ -112,7 +112,7 @@ def rotation_vector(R: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, picture: Optional[Path] = None,
-                 cameras: Sequence[AnyCamera] = (), options: FeatureOptions = FeatureOptions(points=4000)) -> Measured:
+                 cameras: Sequence[AnyCamera] = (), options: FeatureOptions = FeatureOptions()) -> Measured:
     """Matches two images by the recommended chain, refines the matches, adds those they lead to, and with cameras finds the pose
     between them.
 

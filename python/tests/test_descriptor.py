@@ -222,7 +222,7 @@ class Objects(InFolder):
         again.read(self.folder / 'packed')
         self.expect_same(iib, again)
         with self.assertRaisesRegex(opencv_iib.error, '.*/packed holds no parameters'):
-            (self.folder / 'packed').write_bytes(path.read_bytes()[:99])
+            (self.folder / 'packed').write_bytes(path.read_bytes().partition(b'pping')[0])  # within a line: YAML may end after one
             again.read(self.folder / 'packed')
         before = path.read_bytes()
         for size in (0, 100, len(before) - 1):
