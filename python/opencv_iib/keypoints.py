@@ -68,4 +68,4 @@ def as_pairs(matches: MatchesOfKeypoints) -> NDArray[Any]:
     pairs = as_array(matches, 'matches')
     if pairs.size and (pairs.dtype.kind not in 'iu' or pairs.shape[1:] != (2,)):
         raise _core.error('matches are objects like cv2.DMatch or an array of 2 columns of integers (queryIdx, trainIdx)')
-    return pairs.clip(-1, np.iinfo(np.int32).max).astype(np.int32)  # too large is as wrong as negative
+    return pairs.astype(np.int64).clip(-1, np.iinfo(np.int32).max).astype(np.int32)  # too large is as wrong as negative
