@@ -20,6 +20,7 @@ done
 need $build_packages xz-utils $pages_packages
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 find_data
+commit=$(measured_commit)
 configure -DIIB_BUILD_TESTS=ON ${contrib:+"$contrib"}
 build_targets opencv_perf_iib opencv_perf_iib_geometry
 # For half a second each, and the least time counts: neither few samples nor a busy machine's outliers are errors.
@@ -41,4 +42,6 @@ done
 machine=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 "$python3" "$root/tools/pages/speed.py" "$out/speed.csv" "$machine, $(date -u +%Y-%m-%d)" "$build"/speed/*.xml
 "$python3" -B "$root/tools/pages/timings.py" "$out"
-[ "$out" = "$build" ] || "$python3" -B "$root/tools/pages/pages.py"
+[ "$out" != "$build" ] || exit 0
+remember "$out/speed.csv" "$commit" "$machine"
+"$python3" -B "$root/tools/pages/pages.py"

@@ -32,6 +32,12 @@ need $build_packages $pages_packages
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 build_tools ${contrib:+"$contrib" -DIIB_CONTRIB_NONFREE=$nonfree} iib_evaluation
 
+# What is in $pairs goes back to these commits: an earlier run's rows are kept.
+commit=$(measured_commit)
+[ ! -d "$pairs" ] || [ -e "$pairs/commits" ] || echo "not recorded" >"$pairs/commits"
+mkdir -p "$pairs"
+grep -qxF -e "$commit" "$pairs/commits" 2>/dev/null || echo "$commit" >>"$pairs/commits"
+
 for image in view_noon.jpg view_overcast.jpg day.png night.png view_noon.jpg view_panned.jpg street_noon.jpg street_winter.jpg facade_noon.jpg facade_night.jpg facade_noon.jpg facade_turned.jpg; do
     set -- "$@" --compare "$root/tools/synthetic/$image"
 done
@@ -42,12 +48,11 @@ done
 [ ! -e "$pairs/matched_points.csv" ] || "$python3" "$root/tools/evaluation/by_poselib.py" "$pairs"
 [ -z "$document" ] || out="$root/doc/results"
 [ ! -e "$pairs/fixed_points.csv" ] || cp "$pairs/settings.txt" "$out"
-commit=$(git -C "$root" rev-parse --short HEAD 2>/dev/null || echo unknown)
 machine="$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $jobs threads"
 [ -z "$contrib" ] ||
     machine="$machine, opencv_contrib $(sed -n 's/^Version: \([0-9]*[.][0-9]*[.][0-9]*\).*/\1/p' "${contrib#*=}/PKG-INFO")"
 [ ! -e "$pairs/pictures" ] || cp -r "$pairs/pictures" "$out"
-"$python3" -B "$root/tools/pages/summaries.py" "$pairs" "$out" "$commit" "$machine"
+"$python3" -B "$root/tools/pages/summaries.py" "$pairs" "$out" "$(paste -sd';' "$pairs/commits")" "$machine"
 if [ -n "$document" ]; then
     "$python3" -B "$root/tools/pages/pages.py"
 elif [ -e "$out/fixed_points.csv" ]; then

@@ -162,6 +162,18 @@ build_library() {
     build_targets "$@"
 }
 
+# The commit that is measured; "dirty" where files differ from it, but for those into which figures are written.
+measured_commit() {
+    commit=$(git -C "$root" rev-parse --short HEAD 2>/dev/null) || commit=unknown
+    [ "$commit" = unknown ] || git -C "$root" diff --quiet HEAD -- . ':!doc' ':!README.md' || commit="$commit, dirty"
+    echo "$commit"
+}
+
+# remember FILE COMMIT MACHINE: of which run a file in doc is.
+remember() {
+    "$python3" -B "$root/tools/pages/remember.py" "$@"
+}
+
 # The argument of configure with which the tools have the descriptors of opencv_contrib.
 contrib_argument() {
     need python3-venv >&2

@@ -19,6 +19,7 @@ for argument in "$@"; do
     esac
 done
 need $build_packages python3-venv python3-dev $pages_packages
+commit=$(measured_commit)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir -p "$build"
@@ -27,4 +28,6 @@ say "building the package"
 "$work/environment/bin/pip" install --quiet "${root}[distributed]" opencv-python-headless faiss-cpu
 say "measuring"
 "$work/environment/bin/python" "$root/tools/scale/measure.py" --out "$out" "$@"
-[ "$out" = "$build/scale.json" ] || "$python3" -B "$root/tools/pages/pages.py"
+[ "$out" != "$build/scale.json" ] || exit 0
+remember "$out" "$commit" "$(sed -n 's/^ "machine": "\(.*\)",$/\1/p' "$out")"
+"$python3" -B "$root/tools/pages/pages.py"

@@ -391,7 +391,8 @@ def scale_run():
     data = scale()
     found = {(r['bytes'], r['k'], r['threads']): r for r in data['flat']['rows']}
     slow = sorted({key[0] for key, row in found.items() if key[2] == 1 and row['iib_ns'] < 1.5 * found[key[0], key[1], 2]['iib_ns']})
-    text = 'Of %s: %s. Searches take turns, and their medians of %d calls count.' % (data['date'], data['machine'], data['rounds'])
+    run = summaries.by(rows('runs.csv'), 'file')['scale.json']
+    text = 'Of %s, commit %s: %s. Searches take turns, and their medians of %d calls count.' % (data['date'], run['commit'], data['machine'], data['rounds'])
     return text + ' At %s bytes the second thread\nbrought little in that run: those rows are to be measured again.' % ' and '.join(map(str, slow)) if slow else text
 
 

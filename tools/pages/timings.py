@@ -8,7 +8,7 @@ import sys
 
 import pandas as pd
 
-from summaries import table
+from summaries import by, read, table
 
 RESULTS = pathlib.Path(__file__).resolve().parents[2] / 'doc/results'
 
@@ -40,8 +40,9 @@ def shown(form, row):
 
 
 def machine():
-    """Where, when and with which OpenCV."""
-    return (RESULTS / 'speed.csv').read_text().partition('\n')[0][2:] + '.'
+    """Where, when, with which OpenCV, and of which commit if that is known."""
+    run = by(read(RESULTS / 'runs.csv'), 'file').get('speed.csv')
+    return (RESULTS / 'speed.csv').read_text().partition('\n')[0][2:] + (', commit %s.' % run['commit'] if run else '.')
 
 
 DESCRIBED = 'IIB_Describe_hd', 'IIB_Describe_contrib'
