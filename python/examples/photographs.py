@@ -80,7 +80,7 @@ def make_database(method, images, points, folder, chain):
 
 
 def reconstruct(method, images, points, work):
-    """The largest component; pycolmap.Reconstruction."""
+    """The largest component, a pycolmap.Reconstruction, and how many images the others have."""
     folder = work / method
     if not (folder / 'model').exists():
         folder.mkdir(parents=True, exist_ok=True)
@@ -90,7 +90,8 @@ def reconstruct(method, images, points, work):
                                              {'random_seed': 1, 'extract_colors': False, **FASTER})
         (folder / 'model').mkdir()
         max(found.values(), key=lambda model: model.num_reg_images()).write(folder / 'model')
-    return pycolmap.Reconstruction(folder / 'model')
+    sizes = sorted((pycolmap.Reconstruction(each).num_reg_images() for each in folder.iterdir() if each.name.isdigit()), reverse=True)
+    return pycolmap.Reconstruction(folder / 'model'), sizes[1:]
 
 
 def poses(model):
@@ -158,7 +159,7 @@ def main():
     pycolmap.logging.minloglevel = pycolmap.logging.WARNING.value
     pycolmap.set_random_seed(1)
     table = csv.writer(sys.stdout, lineterminator='\n')
-    table.writerow(['scene', 'method', 'registered', 'points', 'track', 'reprojection', 'centres', 'degrees', 'close'])
+    table.writerow(['scene', 'method', 'registered', 'others', 'points', 'track', 'reprojection', 'centres', 'degrees', 'close'])
     for scene in arguments.scenes:
         images, work = scene / 'images', arguments.work / (scene.name + ' relit' * arguments.relit)
         if arguments.relit:
@@ -168,17 +169,17 @@ def main():
             images = work / 'images'
         truth, models = scene / 'poses.txt', {}
         for method in arguments.methods.split(','):
-            model = models[method] = reconstruct(method, images, arguments.points, work)
-            errors = [''] * 3
+            models[method], others = reconstruct(method, images, arguments.points, work)
+            model, errors = models[method], [''] * 3
             if truth.exists():
                 errors = told({Path(name).stem: pose for name, pose in poses(model).items()}, true_poses(truth))
-            table.writerow([work.name, method, f'{model.num_reg_images()} of {len(list(images.iterdir()))}', model.num_points3D(),
+            table.writerow([work.name, method, f'{model.num_reg_images()} of {len(list(images.iterdir()))}', ' '.join(map(str, others)), model.num_points3D(),
                             f'{model.compute_mean_track_length():.2f}', f'{model.compute_mean_reprojection_error():.2f}', *errors])
             sys.stdout.flush()
         if not truth.exists():
             for a, b in itertools.combinations(models, 2):
                 other = {name: pose for name, (pose, _) in poses(models[b]).items()}
-                table.writerow([work.name, f'{a} and {b}', '', '', '', '', *told(poses(models[a]), other)])
+                table.writerow([work.name, f'{a} and {b}', '', '', '', '', '', *told(poses(models[a]), other)])
         if arguments.other:
             other = {path.name for path in images.iterdir()
                      if any(fnmatch.fnmatch(path.name, pattern) for pattern in arguments.other.split(','))}

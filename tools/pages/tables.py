@@ -422,8 +422,9 @@ def mapped_index():
 def photographs(known=True):
     """Reconstructions of scenes with known poses, and what they keep in other light; or of one without."""
     found = [row for row in rows('photographs.csv') if (row['scene'] != 'liberty') == known]
-    lines = table(['scene', 'method', 'registered', 'points', 'track', 'reprojection', 'centres, %', 'degrees', 'within 5 % and 5 degrees'],
-                  [list(row.values()) for row in found])
+    columns = [name for name in found[0] if name != 'others' or not known]
+    heads = {'others': 'images of other components', 'centres': 'centres, %', 'close': 'within 5 % and 5 degrees'}
+    lines = table([heads.get(name, name) for name in columns], [[row[name] for name in columns] for row in found])
     if not known:
         return lines
     kept, errors = {}, {}
