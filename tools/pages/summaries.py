@@ -186,19 +186,20 @@ def gain(pairs):
 
 
 def summarize_gains(source, target):
-    """Right matches of the default descriptor over those of a detector's own, at its points, of pairs in changed light."""
+    """Right matches of the default descriptor over those of a detector's own, at its points, of pairs in changed light: all, and those of sets that
+    nothing was trained on."""
     counts = collections.defaultdict(dict)
     for row in read(source):
-        if 'natural' in places(row):
-            counts[row['detector'], row['descriptor']][row['set'], row['sequence'], row['target']] = int(row['correct'])
+        for place in {'natural', 'light'}.intersection(places(row)):
+            counts[place, row['detector'], row['descriptor']][row['set'], row['sequence'], row['target']] = int(row['correct'])
     lines = []
-    for detector in sorted(detector for detector, descriptor in counts if detector == descriptor):
-        own, ours, scenes = counts[detector, detector], counts[detector, 'IIB'], collections.defaultdict(list)
+    for place, detector in sorted(key[:2] for key in counts if key[1] == key[2]):
+        own, ours, scenes = counts[place, detector, detector], counts[place, detector, 'IIB'], collections.defaultdict(list)
         for pair in sorted(own.keys() & ours):
             scenes[pair[:2]].append((own[pair], ours[pair]))
         pairs = [pair for scene in scenes.values() for pair in scene]
-        lines.append([detector, len(pairs)] + ['%.4f' % v for v in (gain(pairs), *interval(scenes.values(), gain))])
-    write(target, ['detector', 'pairs', 'gain', 'low', 'high'], lines)
+        lines.append([place, detector, len(pairs)] + ['%.4f' % v for v in (gain(pairs), *interval(scenes.values(), gain))])
+    write(target, ['place', 'detector', 'pairs', 'gain', 'low', 'high'], lines)
 
 
 def summarize_differences(source, target):

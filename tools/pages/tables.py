@@ -7,6 +7,7 @@ import functools
 import itertools
 import json
 import pathlib
+import re
 import sys
 
 import summaries
@@ -261,20 +262,21 @@ def pose_methods():
 
 
 def drop_in():
-    """Right matches at the points of a detector by its own descriptor and by the default, and how many times as many, also on pairs of
-    sets that nothing was trained on."""
+    """Right matches at the points of a detector by its own descriptor, the best of two others and the default, and how many times as many, also
+    on pairs of sets that nothing was trained on."""
     found, lines = summaries.by(rows('detected_points.csv'), 'place', 'detector', 'descriptor'), []
 
     def correct(place, detector, descriptor):
         row = found.get((place, detector, descriptor))
         return float(row['correct']) if row else None
-    gains = summaries.by(rows('gains.csv'), 'detector')
+    gains = {(row.get('place', 'natural'), row['detector']): '%.2f (%.2f to %.2f)' % tuple(float(row[column]) for column in ('gain', 'low', 'high')) for row in rows('gains.csv')}
     for name in ('ORB', 'BRISK', 'AKAZE', 'KAZE', 'SIFT'):
-        cells = [correct('natural', name, descriptor) for descriptor in (name, 'BEBLID-512', 'IIB')]
-        lines.append([name, *('–' if cell is None else '%.0f' % cell for cell in cells), '%.2f (%.2f to %.2f)' % tuple(
-            float(gains[name][column]) for column in ('gain', 'low', 'high')), '%.2f' % (correct('light', name, 'IIB') / correct('light', name, name))])
-    return table(['points of (%s pairs)' % found['natural', 'ORB', 'IIB']['pairs'], 'its own descriptor', 'BEBLID-512', '**IIB**', 'times its own (95 % interval)',
-                  'the same, of %s pairs of other sets' % found['light', 'ORB', 'IIB']['pairs']], lines)
+        rivals = max(((float(row['correct']), descriptor) for (place, detector, descriptor), row in found.items()
+                      if (place, detector) == ('natural', name) and re.match('[BT]EBLID', descriptor)), default=None)
+        lines.append([name, '%.0f' % correct('natural', name, name), '%s: %.0f' % rivals[::-1] if rivals else '–', '%.0f' % correct('natural', name, 'IIB'), gains['natural', name],
+                      gains.get(('light', name), '%.2f' % (correct('light', name, 'IIB') / correct('light', name, name)))])
+    return table(['points of (%s pairs)' % found['natural', 'ORB', 'IIB']['pairs'], 'its own descriptor', 'best of BEBLID and TEBLID', '**IIB**', 'times its own (95 % interval)',
+                  'times its own, on the %s pairs that are of no webcam' % found['light', 'ORB', 'IIB']['pairs']], lines)
 
 
 POSE_KEYS = 'place', 'detector', 'descriptor', 'points', 'estimator'

@@ -96,7 +96,7 @@ class Figures(unittest.TestCase):
                              [['3', '0', '0', '0'], ['2', '0.25', '0.25', '0.25']])
 
     def test_gains_are_of_the_same_pairs(self):
-        rows = [('tilde_webcam', target, 'ORB', descriptor, 'light', correct, target)
+        rows = [('tilde_webcam' if target else 'iib_demo', target, 'ORB', descriptor, 'light', correct, target)
                 for descriptor, counts in (('ORB', (10, 30)), ('IIB', (20, 30, 99))) for target, correct in enumerate(counts)]
         heads = 'set', 'target', 'detector', 'descriptor', 'kind', 'correct', 'sequence'
         with tempfile.TemporaryDirectory() as folder:
@@ -104,7 +104,7 @@ class Figures(unittest.TestCase):
             with open(source, 'w', newline='') as file:
                 csv.writer(file).writerows([heads, *rows, ('graf', 1, 'ORB', 'ORB', 'viewpoint', 9, 's')])
             summaries.summarize_gains(source, target)
-            self.assertEqual(target.read_text().splitlines()[1:], ['ORB,2,1.2500,1.0000,2.0000'])
+            self.assertEqual(target.read_text().splitlines()[1:], ['light,ORB,1,2.0000,2.0000,2.0000', 'natural,ORB,2,1.2500,1.0000,2.0000'])
 
     def test_uncertainty(self):
         with tempfile.TemporaryDirectory() as folder:
