@@ -29,6 +29,11 @@ def worst(results):
     return found
 
 
+def unseen():
+    """Of places that no rule was tried on: how many images have a pose, and how many of these are where they are told to be."""
+    return [row for row in tables.rows('uncertainty.csv') if row['quantity'] == 'centre of Localizer' and row['data'].startswith('rendered places')]
+
+
 def context(results, setups):
     """What the template takes; `setups` is the file of tools/localization/setups.py."""
     rows = sorted((row for row in results['rows'] if row['place'] == 'street'), key=lambda row: row['method'].startswith('SIFT'))

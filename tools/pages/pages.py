@@ -44,7 +44,8 @@ def results_page(folder):
 def localization_page(folder):
     """The files that show localization, of what was measured."""
     found = json.loads((folder / 'results.json').read_text())
-    return {folder / 'index.html': rendered('localization.html.j2', localization.context(found, folder / 'localization_setups.csv')),
+    unseen = localization.unseen() if folder == ROOT / 'doc/localization' else []
+    return {folder / 'index.html': rendered('localization.html.j2', {**localization.context(found, folder / 'localization_setups.csv'), 'unseen': unseen}),
             folder / 'errors.svg': charts.localization(found)}
 
 
