@@ -16,6 +16,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib import ft2font, ticker  # noqa: E402
 
 GREY, RED, BLUE = '#64748b', '#b91c1c', '#1d4ed8'
+COLOURS = {'recommended chain': RED, 'ALIKED-n16': BLUE, 'ORB': GREY, 'AKAZE': '#a16207', 'SIFT': '#047857', 'SIFT normalized': '#7e22ce'}
 FAR = 1000  # centimetres
 WIDTH = 9  # inches, of every chart
 SCORE = 'score of poses in other light, limits up to 5 degrees'
@@ -91,12 +92,12 @@ def scores(bars):
 
 def cost():
     """Poses in other light over the processor time that they take, of the same pairs: each detector's line goes from few points to many."""
-    figure, axis = plt.subplots(figsize=(WIDTH, 4.2), layout='constrained')
+    figure, axis = plt.subplots(figsize=(5.4, 4.2), layout='constrained')  # small, so that a phone shows all of it
     lines = {}
     for (detector, points, _), ways in tables.poses_by_time().items():
         lines.setdefault(detector, []).append((points, ways))
     for detector, each in lines.items():
-        colour = RED if detector == 'recommended chain' else BLUE if detector.startswith('ALIKED') else GREY
+        colour = COLOURS[detector]
         for way, fill in (('plain', 'none'), ('refined', 'full')):
             rows = [ways[way] for _, ways in sorted(each, key=lambda one: one[0])]
             score, ends = spread(rows)
@@ -106,12 +107,12 @@ def cost():
         for points, ways in each:
             text, where = (str(points), (3, -13)) if points < many else ('%s, %d' % (detector.replace('-n16', ' + LightGlue'), points), (0, 24))
             axis.annotate(text, (float(ways['refined']['milliseconds']), float(ways['refined']['at_5'])), where, textcoords='offset points',
-                          ha='left' if points < many else 'center', fontsize='small', color=colour)
+                          ha='left' if points < many else 'center', color=colour)
     axis.set(xscale='log', ylim=(0, 1), xlim=(5, 20000), xlabel='ms of one core, from two images to the pose', ylabel='score of poses')
     axis.xaxis.set_major_formatter('{x:g}')
     axis.minorticks_off()
     axis.legend(handles=[plt.Line2D([], [], marker='o', fillstyle=fill, color=GREY, linestyle=style, label=label) for fill, style, label in (
-        ('none', ':', 'matches as they are, PoseLib'), ('full', '-', 'propagateMatches, findRelativePose'))], loc='lower right', frameon=False, fontsize='small')
+        ('none', ':', 'matches as they are, PoseLib'), ('full', '-', 'propagateMatches, findRelativePose'))], loc='center right', bbox_to_anchor=(1, .6), frameon=False)
     return svg(figure)
 
 

@@ -122,7 +122,7 @@ class Figures(unittest.TestCase):
                 target.replace(source)
                 self.assertIn('| 3 | 2 | 8 | 25 | 100 | 100 |', tables.uncertainty())
                 self.assertIn('| 1 | 0 | 0 | – | – | – |', tables.uncertainty())
-                self.assertIn(', 0 to 100 of 100 were', tables.sure_claim())
+                self.assertEqual(tables.inside('0.95', 'points'), '100 to 100')
                 self.assertIn('<svg', charts.uncertainty())
 
     def test_the_least_time_of_each_instruction_set_counts(self):
@@ -146,6 +146,17 @@ class Figures(unittest.TestCase):
         self.assertEqual([found for _, found in localization.worst({'rows': rows, 'unknown': (3, 200)})],
                          ['100 %', '100 %', '85 %', '100 %', localization.share(3, 200)])
         self.assertEqual([localization.share(20, 20), localization.share(0, 10)], ['100 % (84 to 100)', '0 % (0 to 28)'])
+
+    def test_less_than_a_hundredth_is_no_order(self):
+        recalls = {'IIB': .505, 'IIB quartile': .49, 'IIB overlap': .515, 'ORB': .5}
+        names = {'ORB'}.union(*(group for groups in tables.ORDERS.values() for group in groups))
+        rows = [{'place': place, 'configuration': name, 'recall': recalls.get(name, .5), 'precision': .5 if name == 'ORB' else .595, 'pairs': '4'}
+                for place in tables.GROUPS for name in names]
+        with unittest.mock.patch.object(tables, 'rows', lambda file: rows):
+            found = dict(line.split(' | ')[:2] for line in tables.paper_orders().splitlines()[2:])
+        self.assertEqual([found['| ' + order].partition(':')[0] for order in ('QUARTILE above MEAN', 'overlap above none', 'SORT below MEAN',
+                                                                              '0.1 precision above every other descriptor')],
+                         ['**no**', 'yes', 'level', '**no**'])
 
     def test_each_file_is_known_by_its_run(self):
         with tempfile.TemporaryDirectory() as folder:
