@@ -1,8 +1,8 @@
 #!/bin/sh
 # Builds the source distribution and, from it, the wheel that needs no OpenCV, into build/wheel, and checks what is in the
-# wheel. With --test, python/tests run in clean virtual environments of every Python given: without cv2, beside each of
-# pip's kinds of it and Debian's, with the oldest and the newest numpy. Ten minutes or more, beside ten for the
-# static OpenCV the first time; --test takes longer.
+# wheel. With --test, python/tests run in clean virtual environments of every Python given: without cv2, beside pip's, with
+# the oldest and the newest numpy; with the last Python beside each of pip's kinds of cv2, and Debian's. Ten minutes or
+# more, beside ten for the static OpenCV the first time; --test takes as long again.
 #   scripts/wheel.sh [--test] [PYTHON...]
 # PYTHON: interpreters to build and test with; by default those of 3.9 to 3.14 that pyenv has, else the system's. From Python
 # 3.12 on one wheel serves all (the stable ABI); older ones get a wheel each.
@@ -112,9 +112,10 @@ except ImportError:
 for python in "$@"; do
     [ "$(minor "$python")" -gt 11 ] || check "$python" "" "numpy==1.24.*"
     check "$python" "" "numpy>=2"
-    for kind in opencv-python opencv-contrib-python opencv-python-headless; do
-        check "$python" "" "$kind"
-    done
+    check "$python" "" opencv-python
+done
+for kind in opencv-contrib-python opencv-python-headless; do
+    check "$python" "" "$kind"
 done
 if "$python3" -c 'import cv2' 2>"$work/log" && [ -n "$(ls "$wheels"/*"-cp3$(minor "$python3")-"* 2>"$work/log")" ]; then
     check "$python3"
