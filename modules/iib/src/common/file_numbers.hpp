@@ -12,7 +12,7 @@ namespace iib {
 
 //! Throws "NAME is VALUE; it must be WHAT" unless that holds.
 inline void require(
-        bool holds, const char* name, double value, const char* what, int code = Error::StsOutOfRange)
+        bool holds, const char* name, double value, const char* what, Error::Code code = Error::StsOutOfRange)
 {
     if (!holds)
         CV_Error(code,

@@ -186,7 +186,7 @@ void checkModel(const std::vector<PosedImage>& images, const std::vector<Point3d
     for (const PosedImage& image : images)
     {
         checkName(image.name);
-        const auto refuse = [&](int code, const std::string& why) {
+        const auto refuse = [&](Error::Code code, const std::string& why) {
             CV_Error(code, "image " + image.name + " " + why);
         };
         if (!names.insert(image.name).second)

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "../precomp.hpp"
 #include "five_points.hpp"
-#include "opencv2/calib3d.hpp"
 #include "points.hpp"
 
 namespace cv::iib {

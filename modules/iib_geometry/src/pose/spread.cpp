@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spread.hpp"
 
+#include "../precomp.hpp"
 #include "opencv2/imgproc.hpp"
 
 namespace cv::iib {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "opencv2/calib3d.hpp"
+#include "../precomp.hpp"
 #include "opencv2/iib/verdict.hpp"
 #include "points.hpp"
 

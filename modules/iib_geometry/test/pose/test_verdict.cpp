@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "opencv2/calib3d.hpp"
 #include "pose/verdict.hpp"
 #include "two_cameras.hpp"
 
