@@ -22,7 +22,7 @@ from opencv_iib.functions import match
 from opencv_iib.geometry import FoundPose, NoPose, findRelativePose
 from opencv_iib.localization.localizer import AnyCamera, Camera, as_camera
 from opencv_iib.matcher import HierarchicalMatcher
-from opencv_iib.refinement import PropagatedMatches, RefinedMatches, propagateMatches
+from opencv_iib.refinement import PropagatedMatches, RefinedMatches, prepared, propagateMatches
 from opencv_iib.rotation import matchRotated
 
 COMPARED = .25  # pixels: one scale of poses whose matches are counted, since under scales of their own the looser one has more
@@ -198,6 +198,7 @@ class _Pair:
 
     def __init__(self, *views: View) -> None:
         self.images, self._turns = [view.image for view in views], [view.turn for view in views]
+        self._prepared = [prepared(image) for image in self.images]
         self.lenses = [view.lens for view in views if view.lens is not None]
 
     def measured(self, rows: Sequence[np.ndarray], codes: Sequence[np.ndarray], given: np.ndarray) -> Measured:
@@ -221,7 +222,7 @@ class _Pair:
     def _propagated(self, rows: Sequence[np.ndarray], given: np.ndarray) -> tuple[PropagatedMatches, int]:
         """What cameras see of what matches lead to, in the files' pixels, and how many of them were given: a lens shows nothing beyond
         its range."""
-        found = propagateMatches(self.images[0], rows[0], self.images[1], rows[1], given)
+        found = propagateMatches(self._prepared[0], rows[0], self._prepared[1], rows[1], given)
         found = found._replace(points1=self._turns[0].points(found.points1), points2=self._turns[1].points(found.points2),
                                covariances=self._turns[1].covariances(found.covariances))
         seen = np.ones(len(found.matches), bool)

@@ -1,7 +1,7 @@
 """Matches refined to a fraction of a pixel."""
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -48,8 +48,13 @@ class PropagatedMatches(NamedTuple):
     similarities: NDArray[np.float32]
 
 
-def propagateMatches(image1: ArrayLike, keypoints1: Keypoints, image2: ArrayLike, keypoints2: Keypoints,
-                     matches1to2: MatchesOfKeypoints) -> PropagatedMatches:
+def prepared(image: ArrayLike) -> _core.PreparedImage:
+    """One of two images that :func:`propagateMatches` gets more than once."""
+    return _core.PreparedImage(as_image(image))
+
+
+def propagateMatches(image1: Union[ArrayLike, _core.PreparedImage], keypoints1: Keypoints, image2: Union[ArrayLike, _core.PreparedImage],
+                     keypoints2: Keypoints, matches1to2: MatchesOfKeypoints) -> PropagatedMatches:
     """Refines matches as :func:`refineMatches` and adds further ones that they lead to, as ``cv2.iib.propagateMatches``.
 
     For poses: half as many right matches again where the views are far apart or the light is another.
@@ -58,8 +63,8 @@ def propagateMatches(image1: ArrayLike, keypoints1: Keypoints, image2: ArrayLike
     :return: distances of found matches are the largest float, since no descriptors were compared.
     :raises opencv_iib.error: as :func:`refineMatches`.
     """
-    found, *rows = _core.propagateMatches(
-        as_image(image1), as_rows(keypoints1), as_image(image2), as_rows(keypoints2), as_pairs(matches1to2))
+    images: list[Any] = [image if isinstance(image, _core.PreparedImage) else as_image(image) for image in (image1, image2)]
+    found, *rows = _core.propagateMatches(images[0], as_rows(keypoints1), images[1], as_rows(keypoints2), as_pairs(matches1to2))
     if isinstance(matches1to2, np.ndarray) or (len(matches1to2) and not hasattr(matches1to2[0], 'queryIdx')):
         return PropagatedMatches(found.reshape(-1, 4)[:, :2], *_rows(*rows))
     make, distance = match_type(), float(np.finfo(np.float32).max)

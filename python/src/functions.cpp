@@ -4,12 +4,14 @@
 #include "held.hpp"
 
 #include "opencv2/iib.hpp"
+#include "opencv2/iib/detail/prepared_image.hpp"
 #include "opencv2/iib_geometry.hpp"
 
 namespace iib_python {
 
 namespace {
 
+using cv::iib::PreparedImage;
 typedef std::vector<cv::KeyPoint> KeyPoints;
 typedef std::vector<cv::DMatch> Matches;
 
@@ -33,8 +35,10 @@ std::tuple<cv::Mat, cv::Mat, cv::Mat, cv::Mat> refineMatches(const cv::Mat& imag
     return {points1, points2, covariances, similarities};
 }
 
-std::tuple<Matches, cv::Mat, cv::Mat, cv::Mat, cv::Mat> propagateMatches(const cv::Mat& image1,
-        const KeyPoints& first, const cv::Mat& image2, const KeyPoints& second, Matches matches)
+// Of images, or of prepared ones.
+template <typename Image>
+std::tuple<Matches, cv::Mat, cv::Mat, cv::Mat, cv::Mat> propagateMatches(const Image& image1,
+        const KeyPoints& first, const Image& image2, const KeyPoints& second, Matches matches)
 {
     cv::Mat points1, points2, covariances, similarities;
     cv::iib::propagateMatches(
@@ -80,7 +84,13 @@ void bindFunctions(nb::module_& m)
 {
     m.def("estimateRotation", &cv::iib::estimateRotation, WithoutGil());
     m.def("matchRotated", &matchRotated, WithoutGil());
-    m.def("propagateMatches", &propagateMatches, WithoutGil());
+    nb::class_<PreparedImage>(m, "PreparedImage")
+            .def(
+                    "__init__",
+                    [](PreparedImage* self, const cv::Mat& image) { new (self) PreparedImage(image); },
+                    WithoutGil());
+    m.def("propagateMatches", &propagateMatches<PreparedImage>, WithoutGil());
+    m.def("propagateMatches", &propagateMatches<cv::Mat>, WithoutGil());
     m.def("refineMatches", &refineMatches, WithoutGil());
     m.def("findRelativePose", &findRelativePose, WithoutGil());
     m.def(

@@ -20,7 +20,7 @@ from opencv_iib._images import decode_pages, write_picture
 from opencv_iib.localization import Camera
 from opencv_iib.measure import match_images
 from opencv_iib.geometry import ImageAligner
-from opencv_iib.refinement import propagateMatches
+from opencv_iib.refinement import prepared, propagateMatches
 from support import REPOSITORY, InFolder, cv2, optional, run_command, texture
 
 SCENES = REPOSITORY / 'tools/synthetic'
@@ -85,7 +85,9 @@ class Match(Commands):
     def test_the_pose_is_that_of_matches_that_agree_before_or_after_they_lead_to_others(self):
         a, b = self.write('a.png', self.world((4, 8))), self.write('b.png', self.world((4, 8), .5, 3))
         options = {'cameras': ['PINHOLE,480,360,400,400,240,180'], 'options': FeatureOptions(points=300)}
-        best = match_images(a, b, **options).pose.inliers.sum()
+        with mock.patch('opencv_iib.measure.prepared', wraps=prepared) as preparations:
+            best = match_images(a, b, **options).pose.inliers.sum()
+        self.assertEqual(preparations.call_count, 2)
         random = np.random.default_rng(0)
 
         def shift(points, given):

@@ -61,8 +61,10 @@ PreparedImage::PreparedImage(InputArray image)
 {
 }
 
-PreparedPair::PreparedPair(InputArray image1, InputArray image2)
+PreparedPair::PreparedPair(InputArray image1, InputArray image2, const std::vector<DMatch>& matches)
 {
+    if (matches.empty())
+        return;
     const Mat pixels[] = {checked(image1, 1), checked(image2, 2)};
     const auto prepare = [&](const Range& range) {
         for (int i = range.start; i < range.end; i++)
@@ -74,9 +76,10 @@ PreparedPair::PreparedPair(InputArray image1, InputArray image2)
         parallel_for_(Range(0, 2), prepare);
 }
 
-MatchRefiner::MatchRefiner(const PreparedImage (&images_)[2], const std::vector<KeyPoint>& keypoints1,
-        const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches)
-    : first(keypoints1), second(keypoints2), images{images_[0], images_[1]}
+MatchRefiner::MatchRefiner(const PreparedImage& image1, const PreparedImage& image2,
+        const std::vector<KeyPoint>& keypoints1, const std::vector<KeyPoint>& keypoints2,
+        const std::vector<DMatch>& matches)
+    : first(keypoints1), second(keypoints2), images{image1, image2}
 {
     checkKeyPoints(first, true);
     checkKeyPoints(second, true);

@@ -30,8 +30,9 @@ class MatchRefiner
 {
 public:
     //! Refuses what is not a match of these keypoints.
-    MatchRefiner(const PreparedImage (&images)[2], const std::vector<KeyPoint>& keypoints1,
-            const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches);
+    MatchRefiner(const PreparedImage& image1, const PreparedImage& image2,
+            const std::vector<KeyPoint>& keypoints1, const std::vector<KeyPoint>& keypoints2,
+            const std::vector<DMatch>& matches);
 
     void refine(std::vector<Refinement>& matches) const;
 
@@ -56,12 +57,12 @@ private:
     int turn;  //!< of the second image, as the given matches of keypoints without angles tell it; degrees, to 360
 };
 
-//! The images of a pair, prepared by two threads, after both were checked.
+//! The images of a pair, prepared by two threads, after both were checked; empty without matches, when nothing looks at them.
 struct PreparedPair
 {
     PreparedImage images[2];
 
-    PreparedPair(InputArray image1, InputArray image2);
+    PreparedPair(InputArray image1, InputArray image2, const std::vector<DMatch>& matches);
 };
 
 }  // namespace iib

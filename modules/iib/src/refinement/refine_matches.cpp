@@ -45,13 +45,9 @@ void refineMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1, I
         const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches1to2, OutputArray points1,
         OutputArray points2, OutputArray covariances, OutputArray similarities)
 {
-    std::vector<Refinement> all;
-    if (!matches1to2.empty())
-    {
-        const PreparedPair pair(image1, image2);
-        all = refined(MatchRefiner(pair.images, keypoints1, keypoints2, matches1to2), matches1to2);
-    }
-    write(all, keypoints1, points1, points2, covariances, similarities);
+    const PreparedPair pair(image1, image2, matches1to2);
+    refineMatches(pair.images[0], keypoints1, pair.images[1], keypoints2, matches1to2, points1, points2,
+            covariances, similarities);
 }
 
 void refineMatches(const PreparedImage& image1, const std::vector<KeyPoint>& keypoints1,
@@ -59,10 +55,9 @@ void refineMatches(const PreparedImage& image1, const std::vector<KeyPoint>& key
         const std::vector<DMatch>& matches1to2, OutputArray points1, OutputArray points2,
         OutputArray covariances, OutputArray similarities)
 {
-    const PreparedImage images[] = {image1, image2};
     std::vector<Refinement> all;
     if (!matches1to2.empty())
-        all = refined(MatchRefiner(images, keypoints1, keypoints2, matches1to2), matches1to2);
+        all = refined(MatchRefiner(image1, image2, keypoints1, keypoints2, matches1to2), matches1to2);
     write(all, keypoints1, points1, points2, covariances, similarities);
 }
 
@@ -70,11 +65,20 @@ void propagateMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1
         const std::vector<KeyPoint>& keypoints2, std::vector<DMatch>& matches1to2, OutputArray points1,
         OutputArray points2, OutputArray covariances, OutputArray similarities)
 {
+    const PreparedPair pair(image1, image2, matches1to2);
+    propagateMatches(pair.images[0], keypoints1, pair.images[1], keypoints2, matches1to2, points1, points2,
+            covariances, similarities);
+}
+
+void propagateMatches(const PreparedImage& image1, const std::vector<KeyPoint>& keypoints1,
+        const PreparedImage& image2, const std::vector<KeyPoint>& keypoints2,
+        std::vector<DMatch>& matches1to2, OutputArray points1, OutputArray points2, OutputArray covariances,
+        OutputArray similarities)
+{
     std::vector<Refinement> all;
     if (!matches1to2.empty())
     {
-        const PreparedPair pair(image1, image2);
-        const MatchRefiner refiner(pair.images, keypoints1, keypoints2, matches1to2);
+        const MatchRefiner refiner(image1, image2, keypoints1, keypoints2, matches1to2);
         all = refined(refiner, matches1to2);
         propagate(refiner, keypoints1, keypoints2, all);
         for (size_t i = matches1to2.size(); i < all.size(); i++)

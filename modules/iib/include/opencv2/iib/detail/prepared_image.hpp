@@ -14,7 +14,7 @@ namespace iib {
 
 //! @cond IGNORED
 
-//! An image as refineMatches looks at it, for modules that refine its keypoints more than once.
+//! An image as refineMatches and propagateMatches look at it, for who calls them with it more than once.
 struct CV_EXPORTS PreparedImage
 {
     PreparedImage() {}
@@ -29,6 +29,12 @@ struct CV_EXPORTS PreparedImage
 CV_EXPORTS void refineMatches(const PreparedImage& image1, const std::vector<KeyPoint>& keypoints1,
         const PreparedImage& image2, const std::vector<KeyPoint>& keypoints2,
         const std::vector<DMatch>& matches1to2, OutputArray points1, OutputArray points2,
+        OutputArray covariances = noArray(), OutputArray similarities = noArray());
+
+//! propagateMatches of images that were prepared.
+CV_EXPORTS void propagateMatches(const PreparedImage& image1, const std::vector<KeyPoint>& keypoints1,
+        const PreparedImage& image2, const std::vector<KeyPoint>& keypoints2,
+        std::vector<DMatch>& matches1to2, OutputArray points1, OutputArray points2,
         OutputArray covariances = noArray(), OutputArray similarities = noArray());
 
 //! @endcond
