@@ -4,7 +4,6 @@
 
 #include "test_images.hpp"
 
-#include "opencv2/iib/detail/checked_file.hpp"
 #include "oracle_pixels.hpp"
 
 #include <fstream>
@@ -211,10 +210,11 @@ RotatedPair::RotatedPair(double degrees, double zoom) : homography(Matx33d::eye(
 
 uint64 hashOf(const Mat& m)
 {
-    cv::iib::Fnv1a hash;
+    uint64 hash = CV_BIG_UINT(0xcbf29ce484222325);
     for (int y = 0; y < m.rows; y++)
-        hash.add(m.ptr(y), m.cols * m.elemSize());
-    return hash.value();
+        for (size_t i = 0; i < m.cols * m.elemSize(); i++)
+            hash = (hash ^ m.ptr(y)[i]) * CV_BIG_UINT(0x100000001b3);
+    return hash;
 }
 
 int RotatedPair::correct(const std::vector<DMatch>& matches) const
