@@ -20,8 +20,8 @@ It stands in for `cv::BFMatcher(cv::NORM_HAMMING, crossCheck)` with any binary d
 ordered in levels, the coarse ones first: IIB (IIBDescriptorExtractor::levelSizes), or others when told
 where to look first (ORB: {8, 24}; any descriptor at all: its size as the only level).
 
-All that cv::DescriptorMatcher offers works here, in any combination: several train images, masks (CV_8UC1,
-queries x train rows, one for each image, or an empty one for "all allowed"), `k`, radius, `crossCheck`,
+All that cv::DescriptorMatcher offers but its getTrainDescriptors works here, in any combination: several train images,
+masks (CV_8UC1, queries x train rows, one for each image, or an empty one for "all allowed"), `k`, radius, `crossCheck`,
 `compactResult`. Where BFMatcher does otherwise:
  - results are in the order of distance, then image, then train index; that order decides ties;
  - train images without rows are skipped; without any train rows the rows of the result are empty;
