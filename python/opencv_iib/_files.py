@@ -141,26 +141,6 @@ def replaced(*paths: str) -> Iterator[list[str]]:
 
 
 @contextmanager
-def _opened(path: str) -> Iterator[Optional[int]]:
-    """A folder, or a file, which is made if it is missing, so that no other one can get its number. None where open files cannot be removed."""
-    file = None
-    if os.name != 'nt':
-        with suppress(OSError):  # FileLock says why
-            file = os.open(path, os.O_NOFOLLOW | (os.O_RDONLY if os.path.isdir(path) else os.O_RDWR | os.O_CREAT), 0o666)
-    try:
-        yield file
-    finally:
-        if file is not None:
-            os.close(file)
-
-
-def _is_at(path: str, file: int) -> bool:
-    with suppress(OSError):
-        return os.path.samestat(os.fstat(file), os.stat(path))
-    return False
-
-
-@contextmanager
 def only_writer(path: str) -> Iterator[None]:
     """Locks a folder, or a file, which is made if it is missing, and removed if nothing came of it.
 
@@ -171,10 +151,7 @@ def only_writer(path: str) -> Iterator[None]:
         raise FileExistsError(f'{path} is a link: remove it, or choose another name')
     made = not os.path.exists(path)
     try:
-        with _opened(path) as opened:
-            lock = _core.FileLock(path)
-            if opened is not None and not _is_at(path, opened):  # another process has removed it, and only then unlocked it
-                raise BlockingIOError(f'{path} is being written by another process: wait until it has ended')
+        lock = _core.FileLock(path)
     except _core.error as e:
         raise BlockingIOError(str(e)) from None
     try:

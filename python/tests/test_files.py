@@ -236,22 +236,6 @@ class Files(InFolder):
         self.assertEqual(self.names(), [f'out/{RECORD}', 'out/a'])
 
     @WITH_LINKS
-    def test_a_lock_on_a_file_that_another_process_has_removed_is_none(self):
-        path = str(self.folder / 'a')
-
-        def locked(name, real=_core.FileLock):  # opened, before the other one removes it, and locked then
-            lock = real(name)
-            os.unlink(name)
-            for _ in range(again):
-                Path(name).touch()
-            return lock
-        for again in (0, 1):
-            with mock.patch.object(_core, 'FileLock', locked), self.assertRaisesRegex(BlockingIOError, 'by another process'), only_writer(path):
-                pass
-        with only_writer(path):
-            Path(path).write_text('result')
-
-    @WITH_LINKS
     def test_one_writes_at_a_time_in_python_and_cpp(self):
         out = self.folder / 'out'
         told = 'is being written by another process'

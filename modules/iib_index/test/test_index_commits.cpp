@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "index_fixture.hpp"
+#include "opencv2/iib/detail/files.hpp"
 
 #include <atomic>
 #include <thread>
@@ -15,6 +16,7 @@
 
 namespace opencv_test {
 namespace {
+using cv::iib::FileLock;
 
 struct IIB_MappedIndex_Commits : public IndexFixture
 {
@@ -123,6 +125,33 @@ TEST_F(IIB_MappedIndex_Commits, a_child_forked_meanwhile_does_not_keep_the_lock)
     close(lock);
     kill(child, SIGKILL);
     waitpid(child, 0, 0);
+}
+
+TEST_F(IIB_MappedIndex_Commits, a_lock_on_a_file_that_another_process_has_removed_is_none)
+{
+    const String name = folder.name + "/lock";
+    const auto timesOpened = [&] {
+        int times = 0;
+        char target[1000];
+        for (int file = 0; file < 1000; file++)
+        {
+            const ssize_t size = readlink(format("/proc/self/fd/%d", file).c_str(), target, sizeof(target));
+            times += size == (ssize_t)name.size() && name.compare(0, size, target, size) == 0;
+        }
+        return times;
+    };
+    for (bool again : {false, true})
+    {
+        Ptr<FileLock> lock = makePtr<FileLock>(name, FileLock::WAIT);
+        std::thread waiting([&] { EXPECT_THROW(FileLock(name, FileLock::WAIT), cv::Exception); });
+        while (timesOpened() < 2)
+            usleep(1000);
+        std::remove(name.c_str());
+        if (again)
+            writeFile(name, "");
+        lock.release();
+        waiting.join();
+    }
 }
 
 TEST_F(IIB_MappedIndex_Commits, full_disk_keeps_the_last_commit)

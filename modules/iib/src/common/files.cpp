@@ -284,17 +284,18 @@ FileLock::~FileLock() { CloseHandle(file); }
 #else
 FileLock::FileLock(const String& name, Busy busy)
 {
-    struct stat status;
-    const bool isFolder = stat(name.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
+    struct stat there, locked;
+    const bool isFolder = stat(name.c_str(), &there) == 0 && S_ISDIR(there.st_mode);
     file = ::open(name.c_str(),
             O_CLOEXEC | (isFolder ? O_RDONLY : O_RDWR | O_CREAT) | (busy == WAIT ? 0 : O_NOFOLLOW), 0666);
     int result = -1;
     while (file >= 0 && (result = flock(file, busy == WAIT ? LOCK_EX : LOCK_EX | LOCK_NB)) != 0 &&
             errno == EINTR)
         continue;
-    if (result == 0)
-        return;
-    const bool held = file >= 0 && errno == EWOULDBLOCK;
+    const bool held = result == 0 || (file >= 0 && errno == EWOULDBLOCK);
+    if (result == 0 && fstat(file, &locked) == 0 && stat(name.c_str(), &there) == 0 &&
+            locked.st_dev == there.st_dev && locked.st_ino == there.st_ino)
+        return;  // else another process has removed it, and only then unlocked it
     if (file >= 0)
         close(file);
     if (held)
