@@ -14,7 +14,6 @@ from opencv_iib._streams import check_open_file, is_open_file, write_to_open_fil
 
 PART = '.iib-'  #: how the folder's name begins that results are written to, within that of the results
 RECORD = '.made-by-opencv-iib'  #: a file in both: which command has written which files, of which size and time; all others are the user's
-HALF = r'[.]\d+-\d+[.]tmp'  #: how the name ends of what a WholeFile is called until it is whole
 
 
 def output_file(path: str) -> str:
@@ -190,7 +189,8 @@ def new_results(out: str, command: str, state: str = '') -> Iterator[str]:
     for name in old:
         if not _is_as_written(target, name, old):
             raise FileExistsError(f'{out} holds {name}, which was changed since it was written: move it away, or choose another folder')
-    killed = {name.split('/')[0] for name in there if re.fullmatch(re.escape(PART) + r'\w{8}/' + re.escape(RECORD) + f'({HALF})?', name)}
+    killed = {folder for folder, _, name in (name.partition('/') for name in there)
+              if re.fullmatch(re.escape(PART) + r'\w{8}', folder) and (name == RECORD or _core.isPartOf(RECORD, name))}
     parts = {folder: _recorded(os.path.join(target, folder), command, [name[len(folder) + 1:] for name in there if name.startswith(folder + '/')])
              for folder in killed}
     own = [*old, *(f'{folder}/{name}' for folder, names in parts.items() for name in names)]
@@ -237,21 +237,14 @@ def _recorded(folder: str, command: str, there: Iterable[str]) -> dict[str, set[
             for line in file:  # the last one may be cut off
                 name, stamp = json.loads(line)
                 stamps.setdefault(name, set()).add(stamp)
-    begins = {_begin_of_part(name) for name in (*stamps, RECORD)}
     known: dict[str, set[Optional[str]]] = {}
     for name in there:
-        begin = re.sub(HALF + '$', '', name)
         if name in stamps:
             known[name] = stamps[name]
-        elif begin != name and (begin in begins or begin == 'probe' and _stamp(folder, name).startswith('0 ')):  # which is OutputFolder's
+        elif name.endswith('.tmp') and (any(_core.isPartOf(whole, name) for whole in (*stamps, RECORD)) or
+                                        _core.isPartOf('probe', name) and _stamp(folder, name).startswith('0 ')):  # which is OutputFolder's
             known[name] = {None}
     return known
-
-
-def _begin_of_part(name: str) -> str:
-    """As C++'s beginOf, of what a WholeFile is called until it is whole."""
-    folder, file = os.path.split(name)
-    return name if len(os.fsencode(file)) <= 200 else f'{folder}/iib'.lstrip('/')
 
 
 def _stamp(folder: str, name: str) -> str:
