@@ -6,7 +6,7 @@
 #include <set>
 
 #include "opencv2/iib/detail/files.hpp"
-#include "iib_geometry/src/output_folder.hpp"
+#include "iib_geometry/src/common/output_folder.hpp"
 
 namespace iib_python {
 

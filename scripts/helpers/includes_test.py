@@ -10,13 +10,11 @@ import re
 import sys
 
 # What a folder below src may include, besides precomp.hpp; the rest of the module includes what it likes.
-ALLOWED = {'': {'common'}, 'common': {'common'}, 'rotation': {'rotation', 'common'}}
-ALLOWED['pose'] = {'pose'}  # of iib_geometry
-ALLOWED['map'] = {'map', 'pose'}
-ALLOWED['locate'] = {'locate', 'map', 'pose'}
-ALLOWED[''].update(ALLOWED['locate'])
+ALLOWED = {'': {''}, 'common': {'common'}, 'rotation': {'rotation', 'common'}}
+ALLOWED['pose'] = {'pose', 'common'}  # of iib_geometry
+ALLOWED['map'] = {'map', *ALLOWED['pose']}
+ALLOWED['locate'] = {'locate', *ALLOWED['map']}
 for wing in ('descriptor', 'matcher', 'detector', 'normalization', 'refinement'):
-    ALLOWED[''].add(wing + '/kernels')
     ALLOWED[wing + '/kernels'] = {wing + '/kernels', 'common'}
     ALLOWED[wing] = {wing, wing + '/kernels', 'common'}
 for wing in ('detector', 'refinement'):
@@ -33,6 +31,12 @@ def folder(path):
     return re.sub('^src/?', '', path.parent.as_posix())
 
 
+def resolved(module, file, path):
+    """What a file includes by a path: from its own folder, or from src, as the compiler looks for it."""
+    beside = (file.parent / path).resolve()
+    return beside if beside.exists() else module / 'src' / path
+
+
 def mistakes(module):
     files = sorted(module.rglob('*.[ch]pp'))
     if len(files) < FILES[module.name]:
@@ -42,7 +46,7 @@ def mistakes(module):
         text, name = file.read_text(), file.relative_to(module)
         included = []
         for path in re.findall(r'^#include "([^"]*)(?<!_declarations.hpp)"', text, re.MULTILINE):  # those CMake makes
-            target = (file.parent / path).resolve()
+            target = resolved(module, file, path)
             if module not in target.parents and not any(target.match(shared) for shared in SHARED):
                 yield '%s includes %s, which is not of the module' % (name, path)
             elif module in target.parents and target.exists():
@@ -52,7 +56,7 @@ def mistakes(module):
         layer = folder(name)
         allowed = ALLOWED.get(layer, set())
         for path in included:
-            if folder(path) and folder(path) not in allowed:
+            if folder(path) not in allowed and path.name != 'precomp.hpp':
                 yield '%s includes %s: %s may include only %s' % (name, path, layer, ', '.join(sorted(allowed)))
         unit = name.with_suffix('')
         units.setdefault(unit, set()).update({path.with_suffix('') for path in included} - {unit})
@@ -75,7 +79,7 @@ def picture(modules):
         for file in sorted((module / 'src').rglob('*.[ch]pp')):
             layer = folder(file.relative_to(module))
             for path in re.findall(r'^#include "([^"]*)"', file.read_text(), re.MULTILINE):
-                target = (file.parent / path).resolve()
+                target = resolved(module, file, path)
                 inside = folder(target.relative_to(module)) if module in target.parents and target.exists() else ''
                 detail = re.match('opencv2/iib/detail', path) and module.name != 'iib' and 'iib/detail'
                 included.setdefault(layer, set()).update({inside or detail or layer} - {layer})

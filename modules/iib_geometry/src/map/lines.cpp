@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "../parallel.hpp"
+#include "../common/parallel.hpp"
 #include "triangulation.hpp"
 
 namespace cv::iib {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "../parallel.hpp"
+#include "../common/parallel.hpp"
 #include "camera_pose.hpp"
 #include "triangulation.hpp"
 

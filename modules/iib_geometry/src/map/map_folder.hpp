@@ -2,7 +2,7 @@
 #pragma once
 
 #include "map.hpp"
-#include "../output_folder.hpp"
+#include "../common/output_folder.hpp"
 
 namespace cv::iib {
 

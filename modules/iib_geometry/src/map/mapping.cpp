@@ -7,7 +7,7 @@
 #include <mutex>
 #include <set>
 
-#include "../parallel.hpp"
+#include "../common/parallel.hpp"
 #include "camera_pose.hpp"
 #include "colmap_model.hpp"
 #include "features.hpp"

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "opencv2/iib.hpp"
-#include "../parallel.hpp"
+#include "../common/parallel.hpp"
 #include "camera_pose.hpp"
 
 namespace cv::iib {

@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-#include "../parallel.hpp"
+#include "../common/parallel.hpp"
 
 namespace cv::iib {
 namespace {

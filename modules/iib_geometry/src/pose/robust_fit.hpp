@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "../parallel.hpp"
+#include "../common/parallel.hpp"
 #include "opencv2/core.hpp"
 
 namespace cv::iib {
