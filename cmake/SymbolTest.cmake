@@ -9,7 +9,7 @@ set(classes "cv::iib::(IIBDescriptorExtractor|HessianDetector|HierarchicalMatche
 if(LIBRARY MATCHES "opencv_iib_index[^/]*$")
   set(classes "cv::iib::(MappedIndex)")
 elseif(LIBRARY MATCHES "opencv_iib_geometry[^/]*$")
-  set(classes "cv::iib::(Camera|ImageAligner|Localizer|MapUpdate)")
+  set(classes "cv::iib::(Camera|ImageAligner|Localizer|MapUpdate|OutputFolder)")
 endif()
 set(api 0)
 if(NOT VERSION)

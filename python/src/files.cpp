@@ -6,7 +6,7 @@
 #include <set>
 
 #include "opencv2/iib/detail/files.hpp"
-#include "iib_geometry/src/common/output_folder.hpp"
+#include "opencv2/iib/detail/output_folder.hpp"
 
 namespace iib_python {
 
@@ -25,9 +25,8 @@ static void makeFolder(OutputFolder* self, nb::handle path, const std::vector<nb
 
 void bindFiles(nb::module_& m)
 {
-    m.def("isPartOf", [](nb::handle file, nb::handle name) {
-        return cv::iib::isPartOf(pathOf(file), pathOf(name));
-    });
+    m.def("isPartOf",
+            [](nb::handle file, nb::handle name) { return cv::iib::isPartOf(pathOf(file), pathOf(name)); });
     nb::class_<WholeFile>(m, "WholeFile")
             .def("__init__", [](WholeFile* self, nb::handle path) { new (self) WholeFile(pathOf(path)); })
             .def_prop_ro("part",

@@ -81,7 +81,7 @@ def picture(modules):
             for path in re.findall(r'^#include "([^"]*)"', file.read_text(), re.MULTILINE):
                 target = resolved(module, file, path)
                 inside = folder(target.relative_to(module)) if module in target.parents and target.exists() else ''
-                detail = re.match('opencv2/iib/detail', path) and module.name != 'iib' and 'iib/detail'
+                detail = re.match('opencv2/iib/detail', path) and not (module / 'include' / path).exists() and 'iib/detail'
                 included.setdefault(layer, set()).update({inside or detail or layer} - {layer})
         yield '%s/src' % module.name
         for layer in sorted(included, key=lambda layer: (-len(included[layer]), layer)):

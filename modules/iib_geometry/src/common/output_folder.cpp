@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "output_folder.hpp"
+#include "opencv2/iib/detail/output_folder.hpp"
 
 #include <filesystem>
 

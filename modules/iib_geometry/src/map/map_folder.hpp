@@ -2,7 +2,7 @@
 #pragma once
 
 #include "map.hpp"
-#include "../common/output_folder.hpp"
+#include "opencv2/iib/detail/output_folder.hpp"
 
 namespace cv::iib {
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
+
+#ifndef OPENCV_IIB_DETAIL_OUTPUT_FOLDER_HPP
+#define OPENCV_IIB_DETAIL_OUTPUT_FOLDER_HPP
 
 #include <functional>
 #include <memory>
@@ -7,10 +9,13 @@
 
 #include "opencv2/iib/detail/files.hpp"
 
-namespace cv::iib {
+namespace cv {
+namespace iib {
 
-//! A folder that results are written to; no other process writes results to it meanwhile.
-class OutputFolder
+//! @cond IGNORED
+
+//! A folder that results are written to, by this module or the Python package; no other process writes results to it meanwhile.
+class CV_EXPORTS OutputFolder
 {
 public:
     /** Makes the folder if it is missing. A link is followed, also if nothing is at its end yet.
@@ -30,4 +35,9 @@ private:
     std::unique_ptr<FileLock> lock_;
 };
 
-}  // namespace cv::iib
+//! @endcond
+
+}  // namespace iib
+}  // namespace cv
+
+#endif
