@@ -119,8 +119,8 @@ void ImageLocator::locate(const Camera& camera, const Affine3d* prior, LocatedIm
                     image.sees[size_t(m.trainIdx)], m.queryIdx, int(m.distance), int(k), m.trainIdx,
                     Vec2f(image.sizes[size_t(m.trainIdx)], found.features.sizes[size_t(m.queryIdx)])});
     }
-    found.reason = "too few matches";
-    found.matches = found.inliers = 0;
+    found.location.reason = "too few matches";
+    found.location.matches = found.location.inliers = 0;
     if (matches.size() >= LEAST_INLIERS)
         findPose(matches, map_, pictures_, camera, found);
 }
@@ -137,7 +137,7 @@ LocatedImage ImageLocator::find(
     LocatedImage found;
     extract(*iib_, upright.image(image.pixels), upright.image(image.mask), found.features);
     found.features.camera = camera;
-    found.reason = "too few matches";
+    found.location.reason = "too few matches";
     if (found.features.pixels.empty())
         return found;
     if (lines_)
@@ -147,14 +147,15 @@ LocatedImage ImageLocator::find(
         found.compared = near(*prior);
         locate(camera, prior, found);
     }
-    if (!found.found)
+    if (!found.location.found)
     {
         found.compared = similar(found.features.codes);
         locate(camera, nullptr, found);
     }
-    if (found.found)
-        found.covariance += inWorld(mapError_, found.cameraFromWorld, found.depth);
-    found.features.cameraFromWorld = found.cameraFromWorld;
+    Location& location = found.location;
+    if (location.found)
+        location.covariance += inWorld(mapError_, location.cameraFromWorld, found.depth);
+    found.features.cameraFromWorld = location.cameraFromWorld;
     return found;
 }
 
@@ -201,7 +202,7 @@ Location Localizer::localize(
         InputArray image, const Camera& camera, const Affine3d* prior, int orientation, InputArray mask) const
 {
     const Photograph photograph(image.getMat(), orientation, mask.getMat());
-    return inFile(impl_->finder.find(photograph, camera, prior), photograph);
+    return inFile(impl_->finder.find(photograph, camera, prior).location, photograph);
 }
 
 }  // namespace cv::iib

@@ -19,7 +19,7 @@ constexpr size_t NEIGHBOURS = 10;  // added images that each is matched with
 
 bool atOnePlace(const LocatedImage& seen, const PosedImage& other)
 {
-    return distance(seen.cameraFromWorld, other.cameraFromWorld, seen.depth) <= APART;
+    return distance(seen.location.cameraFromWorld, other.cameraFromWorld, seen.depth) <= APART;
 }
 
 //! Counts for each code whether this update looked for it and found it; returns how many nobody finds any more.
@@ -38,7 +38,7 @@ int countMisses(Map& map, const std::vector<LocatedImage>& all)
         for (size_t i : seen.compared)
         {
             const std::vector<Point2d> places =
-                    lens.project(inCamera(map.seenBy(map.images[i]), seen.cameraFromWorld));
+                    lens.project(inCamera(map.seenBy(map.images[i]), seen.location.cameraFromWorld));
             for (size_t k = 0; k < places.size(); k++)
                 looked[i][k] |= picture.contains(places[k]);  // not NaN, behind the camera
         }
@@ -200,9 +200,9 @@ Location MapUpdate::add(
         found.features.name = name;
         const std::lock_guard<std::mutex> lock(impl_->mutex);
         impl_->checkOpen();
-        if (found.found)
+        if (found.location.found)
             impl_->seen.push_back(found);
-        return inFile(found, photograph);
+        return inFile(found.location, photograph);
     }
     catch (...)
     {

@@ -71,19 +71,19 @@ private:
     const Lens& lens_;
 };
 
-//! A pose in the making, in its Frame's axes. Each step says whether there still is one; if not, found.reason says why.
+//! A pose in the making, in its Frame's axes. Each step says whether there still is one; if not, the location's reason says why.
 class PoseSearch
 {
 public:
     PoseSearch(const std::vector<Match>& all, const Map& map, PreparedPictures& pictures,
             const Camera& camera, LocatedImage& found)
-        : map_(map), views_{map, pictures, {}}, found_(found), frame_(all), lens_(camera),
-          limit_(MAX_ERROR * std::max(camera.size.width, camera.size.height)), all_(all)
+        : map_(map), views_{map, pictures, {}}, found_(found), location_(found.location), frame_(all),
+          lens_(camera), limit_(MAX_ERROR * std::max(camera.size.width, camera.size.height)), all_(all)
     {
         for (Match& m : all_)
             m.point = frame_.toLocal(m.point);
         matches_ = withoutRepeated(all_);
-        found.matches = int(matches_.size());
+        location_.matches = int(matches_.size());
     }
 
     //! By the keypoints that match, which are refined on the way.
@@ -93,7 +93,7 @@ public:
         for (size_t i : best(matches_.size(), SUREST,
                      [&](size_t a, size_t b) { return matches_[a].bits < matches_[b].bits; }))
             surest.push_back(matches_[i]);
-        found_.reason = "too few matches agree";
+        location_.reason = "too few matches agree";
         if (!poseByRansac(surest, lens_, limit_, pose_))
             return false;
         for (int round = 0; round < ROUNDS; round++)
@@ -101,12 +101,12 @@ public:
             if (round > 0 && !refined(inliers_))
                 return false;
             inliers_ = near(matches_);
-            found_.inliers = keypointsOf(inliers_);
-            if (found_.inliers < LEAST_INLIERS + LEAST_SHARE * double(found_.matches))
+            location_.inliers = keypointsOf(inliers_);
+            if (location_.inliers < LEAST_INLIERS + LEAST_SHARE * double(location_.matches))
                 return false;
             if (round == 0 && !isMoreThanChance())
             {
-                found_.reason = "the matches that agree are no more than chance may give";
+                location_.reason = "the matches that agree are no more than chance may give";
                 return false;
             }
             if (round == 1)
@@ -159,23 +159,23 @@ public:
             return false;
         Vec3d variances;
         eigen(covariance_.get_minor<3, 3>(0, 0), variances);
-        found_.reason = "the pose is uncertain";
+        location_.reason = "the pose is uncertain";
         return 3 * std::sqrt(variances[0]) <= MAX_BOUND * depth();
     }
 
     void writeResult() const
     {
-        found_.found = true;
-        found_.reason = "";
-        found_.cameraFromWorld = frame_.toWorld(pose_);
-        found_.covariance = frame_.toWorld(covariance_);
+        location_.found = true;
+        location_.reason = "";
+        location_.cameraFromWorld = frame_.toWorld(pose_);
+        location_.covariance = frame_.toWorld(covariance_);
         for (const Match& m : inliers_)
             if (m.keypoint >= 0)
             {
-                found_.pixels.push_back(m.pixel);
-                found_.points.push_back(map_.points[size_t(m.number)]);
+                location_.pixels.push_back(m.pixel);
+                location_.points.push_back(map_.points[size_t(m.number)]);
             }
-        found_.depth = medianDistance(inCamera(found_.points, found_.cameraFromWorld));
+        found_.depth = medianDistance(inCamera(location_.points, location_.cameraFromWorld));
         found_.agreeing = near(all_);
     }
 
@@ -210,13 +210,14 @@ private:
     bool determined(bool is)
     {
         if (!is)
-            found_.reason = "the points do not determine the pose";
+            location_.reason = "the points do not determine the pose";
         return is;
     }
 
     const Map& map_;
     Views views_;
     LocatedImage& found_;
+    Location& location_;
     const Frame frame_;
     const Lens lens_;
     const double limit_;  //!< pixels

@@ -11,8 +11,9 @@ namespace cv::iib {
 constexpr size_t LEAST_INLIERS = 15;
 
 //! What is found of an image, and what of the map showed it.
-struct LocatedImage : Location
+struct LocatedImage
 {
+    Location location;
     Features features;             //!< with the camera and, if it is found, the pose
     Segments segments;             //!< if lines refine the pose
     std::vector<size_t> compared;  //!< images of the map

@@ -34,13 +34,13 @@ struct Sought
         add(pixel, random.uniform(3., 6.), off);
     }
 
-    LocatedImage located() const
+    Location located() const
     {
         LocatedImage found;
         found.features.picture = pictureOf(Mat(VGA.size, CV_8U, Scalar(128)));
         PreparedPictures pictures(map.images.size());
         findPose(matches, map, pictures, VGA, found);
-        return found;
+        return found.location;
     }
 };
 
@@ -61,7 +61,7 @@ TEST(PoseSearch, few_matches_that_all_agree_are_a_pose)
             for (const Point2d& beside : {Point2d(-6, -6), {6, -6}, {-6, 6}, {6, 6}})
                 sought.addAnywhere(random, place + beside, anyError(random, .5));
         }
-        const LocatedImage found = sought.located();
+        const Location found = sought.located();
         EXPECT_TRUE(found.found) << trial << ": " << found.reason;
     }
 }
@@ -78,7 +78,7 @@ TEST(PoseSearch, matches_in_one_window_are_no_pose)
             const Point2d pixel = right ? Point2d(300, 200) + 4 * Point2d(i % 5, i / 5) : anyPixel(random);
             sought.addAnywhere(random, pixel, right ? Point2d() : anyPixel(random) - pixel);
         }
-        const LocatedImage found = sought.located();
+        const Location found = sought.located();
         EXPECT_FALSE(found.found);
         EXPECT_EQ("the matches that agree are no more than chance may give", found.reason);
         EXPECT_GE(found.inliers, 16) << "which is enough";
