@@ -11,7 +11,7 @@ struct Views
 {
     const Map& map;
     PreparedPictures& pictures;  //!< of the map's images
-    PreparedPicture own;
+    const PreparedPicture& own;
 };
 
 /** Moves the pixels of matches to where an image shows what the map's images show, and gives those the deviation REFINED.

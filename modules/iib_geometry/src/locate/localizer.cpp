@@ -152,6 +152,7 @@ LocatedImage ImageLocator::find(
         found.compared = similar(found.features.codes);
         locate(camera, nullptr, found);
     }
+    found.prepared = PreparedPicture();
     Location& location = found.location;
     if (location.found)
         location.covariance += inWorld(mapError_, location.cameraFromWorld, found.depth);

@@ -77,8 +77,9 @@ class PoseSearch
 public:
     PoseSearch(const std::vector<Match>& all, const Map& map, PreparedPictures& pictures,
             const Camera& camera, LocatedImage& found)
-        : map_(map), views_{map, pictures, {}}, found_(found), location_(found.location), frame_(all),
-          lens_(camera), limit_(MAX_ERROR * std::max(camera.size.width, camera.size.height)), all_(all)
+        : map_(map), views_{map, pictures, found.prepared}, found_(found), location_(found.location),
+          frame_(all), lens_(camera), limit_(MAX_ERROR * std::max(camera.size.width, camera.size.height)),
+          all_(all)
     {
         for (Match& m : all_)
             m.point = frame_.toLocal(m.point);
@@ -111,7 +112,8 @@ public:
             }
             if (round == 1)
             {
-                views_.own = PreparedPicture(found_.features.picture);
+                if (found_.prepared.image.pixels.empty())  // else it was for a prior
+                    found_.prepared = PreparedPicture(found_.features.picture);
                 refineAgainstViews(inliers_, views_, WORTH);
                 matches_ = inliers_;
             }

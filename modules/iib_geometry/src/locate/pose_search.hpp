@@ -15,6 +15,7 @@ struct LocatedImage
 {
     Location location;
     Features features;             //!< with the camera and, if it is found, the pose
+    PreparedPicture prepared;      //!< of the features' picture, while a pose is looked for
     Segments segments;             //!< if lines refine the pose
     std::vector<size_t> compared;  //!< images of the map
     double depth = 0;              //!< median distance of what it sees

@@ -34,14 +34,21 @@ struct Sought
         add(pixel, random.uniform(3., 6.), off);
     }
 
-    Location located() const
+    void find(LocatedImage& found) const
     {
-        LocatedImage found;
-        found.features.picture = pictureOf(Mat(VGA.size, CV_8U, Scalar(128)));
         PreparedPictures pictures(map.images.size());
         findPose(matches, map, pictures, VGA, found);
-        return found.location;
     }
+
+    LocatedImage found() const
+    {
+        LocatedImage image;
+        image.features.picture = pictureOf(Mat(VGA.size, CV_8U, Scalar(128)));
+        find(image);
+        return image;
+    }
+
+    Location located() const { return found().location; }
 };
 
 Point2d anyPixel(RNG& random) { return {random.uniform(0., 640.), random.uniform(0., 480.)}; }
@@ -64,6 +71,18 @@ TEST(PoseSearch, few_matches_that_all_agree_are_a_pose)
         const Location found = sought.located();
         EXPECT_TRUE(found.found) << trial << ": " << found.reason;
     }
+}
+
+TEST(PoseSearch, an_image_is_prepared_once_for_a_prior_and_without_one)
+{
+    RNG random(5);
+    Sought sought;
+    for (int i = 0; i < 40; i++)
+        sought.addAnywhere(random, anyPixel(random), Point2d());
+    LocatedImage found = sought.found();
+    EXPECT_TRUE(found.location.found) << found.location.reason;
+    found.features.picture = Picture();  // which cannot be prepared
+    EXPECT_NO_THROW(sought.find(found));
 }
 
 TEST(PoseSearch, matches_in_one_window_are_no_pose)
