@@ -222,9 +222,9 @@ private:
     Location& location_;
     const Frame frame_;
     const Lens lens_;
-    const double limit_;  //!< pixels
-    std::vector<Match> all_, matches_, inliers_,
-            used_;  //!< every code's; each keypoint's once; near the pose; that made it
+    const double limit_;                 //!< pixels
+    std::vector<Match> all_, matches_;   //!< every code's; each keypoint's once
+    std::vector<Match> inliers_, used_;  //!< near the pose; that made it
     Affine3d pose_;
     Matx66d covariance_;
 };

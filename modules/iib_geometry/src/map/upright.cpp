@@ -10,8 +10,7 @@ namespace {
 struct Pair
 {
     const char* model;
-    size_t x,
-            y;  //!< parameters after the centre of what turns with the image: what lies along x, and along y
+    size_t x, y;  //!< parameters after the centre: of what lies along x and y, and turns with the image
 };
 
 const Pair PAIRS[] = {{"OPENCV", 3, 2}, {"FULL_OPENCV", 3, 2}, {"THIN_PRISM_FISHEYE", 3, 2},

@@ -9,11 +9,10 @@
 namespace cv::iib {
 namespace {
 
-const double LEAST_SCALE = .1, MOST_SCALE = 1000;  // pixels
-const double RANK = 1e-13;                         // of covariances in double precision
-const double ONE_ROTATION = .05,
-             ONE_DIRECTION = 1;  // radians: less apart, two poses are told as one that is not exact
-const double REFINED = .25;      // least scale by which matches count as agreeing, pixels
+const double LEAST_SCALE = .1, MOST_SCALE = 1000;    // pixels
+const double RANK = 1e-13;                           // of covariances in double precision
+const double ONE_ROTATION = .05, ONE_DIRECTION = 1;  // radians: two poses less apart are one, not exact
+const double REFINED = .25;                          // least scale by which matches count as agreeing, pixels
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {

@@ -82,8 +82,9 @@ struct RefinementKernels
 {
     //! (1 2 1) / 4 in both directions; the ends of rows are repeated. `sums` has room for 2 more than `width`.
     void (*smooth)(const uchar* const rows[3], ushort* sums, uchar* out, int width);
-    /** A window: two bytes of the image a pixel, each less 128: its own and the one below; of a column more than size,
-     so that four bytes are what a sample lies between. Reads a row more, and of each WINDOW + 1 pixels. */
+    /** Writes of each pixel of `size`, and of a column more, two bytes: its own value and that of the pixel below, each
+     less 128. So two neighbours are the four pixels around a sample. Reads a row more than `size` has, and
+     WINDOW + 1 pixels of each row. */
     void (*readWindow)(const uchar* pixels, size_t step, Size size, ushort* window);
     //! Samples of a window, bilinear; all must be inside.
     void (*sample)(const ushort* window, const PatchGrid& grid, short* samples);
