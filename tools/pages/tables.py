@@ -1,7 +1,7 @@
 """Tables and sentences of figures in README.md and in pages of doc, of the results in doc/results, as Markdown.
 
 They stand between the lines `<!-- figures NAME -->` and `<!-- end of figures -->`, NAME being a function below or one of the paper's
-tables. PAGES has all of them.
+tables. ALL has them.
 """
 import functools
 import itertools

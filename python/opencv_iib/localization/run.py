@@ -82,16 +82,16 @@ def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[
     return own, find(name, grey, own, orientation, masks.of(name if folder else os.path.basename(name), grey))
 
 
-def _teller(cameras: Sequence[Camera], log: Callable[[str], None]) -> Callable[[Camera], None]:
+def _camera_reporter(cameras: Sequence[Camera], log: Callable[[str], None]) -> Callable[[Camera], None]:
     """What tells, once, of a camera that was taken for others of the map."""
     told = set()
 
-    def tell(own: Camera) -> None:
+    def report_camera(own: Camera) -> None:
         alike = sum((other.width, other.height) == (own.width, own.height) for other in cameras)
         if own in cameras and own not in told and alike > 1:
             log(f'{own.width} x {own.height} pixels: {own}, the middle one of {alike} cameras of the map, which agree')
         told.add(own)
-    return tell
+    return report_camera
 
 
 def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence[str], camera: Optional[AnyCamera],
@@ -107,7 +107,7 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
     masks.check(names)
     given, cameras = None if camera is None else as_camera(camera), list(map(as_camera, known))
     check_sizes(folder, names, masks, given)
-    tell = _teller(cameras, log)
+    report_camera = _camera_reporter(cameras, log)
     progress = Progress('localizing', len(names))
 
     def job(name: str) -> tuple[Camera, Location]:
@@ -119,7 +119,7 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
             raise result
         own, location = (None, str(result)) if isinstance(result, Exception) else result
         if given is None and own is not None:
-            tell(own)
+            report_camera(own)
         yield name, own, location
         progress.step()
     progress.close()
@@ -221,7 +221,7 @@ def localize_stream(map: Path, paths: Iterable[str], camera: Optional[AnyCamera]
     """
     localizer, masks = _localizer(map, 1000, lines), Masks(mask)
     find, known, given, last = _finder(localizer, max_size), localizer.cameras, None if camera is None else as_camera(camera), None
-    tell = _teller(known, log)
+    report_camera = _camera_reporter(known, log)
     for path in paths:
         path = path.rstrip('\r\n')
         try:
@@ -229,7 +229,7 @@ def localize_stream(map: Path, paths: Iterable[str], camera: Optional[AnyCamera]
                 raise ValueError('a path must not begin with #: write ./ before it')
             own, location = _locate(lambda name, image, own, *more: find(image, own, last, *more), known, '', given, exif, masks, path)
             if given is None:
-                tell(own)
+                report_camera(own)
             last, problem = location.cam_from_world, location.reason
         except (ValueError, OSError, error) as e:
             last, problem = None, str(e)

@@ -346,8 +346,8 @@ Matx22d PatchAligner::withoutNoise(const Matx22d& ofPoint, const Matx<double, 6,
     const double perSquare = noise / (2 * (ofResiduals.squares + 1.));
     const double across = perSquare * (ofResiduals.squares - ofResiduals.right);
     const double down = perSquare * (ofResiduals.squares - ofResiduals.below);
-    const double ofMap[] = {across * squaredPlace, down * squaredPlace};
-    const double inDerivatives[] = {across, down, ofMap[0], ofMap[0], ofMap[1], ofMap[1]};
+    const double ofWarp[] = {across * squaredPlace, down * squaredPlace};
+    const double inDerivatives[] = {across, down, ofWarp[0], ofWarp[0], ofWarp[1], ofWarp[1]};
     Matx22d sum = Matx22d::zeros();
     for (int i = 0; i < PARAMETERS; i++)
         for (int j = 0; j < 2; j++)

@@ -17,7 +17,7 @@ constexpr int64 MAX_GAP = 100000000;                   // nanoseconds between re
 
 Matx33d turnBy(const Vec3d& vector) { return Affine3d(vector).rotation(); }
 
-void setBlock(ImuState::Square& matrix, int row, int column, const Matx33d& block)
+void setBlock(ImuState::Matrix& matrix, int row, int column, const Matx33d& block)
 {
     for (int y = 0; y < 3; y++)
         for (int x = 0; x < 3; x++)
@@ -45,12 +45,12 @@ ImuState::Errors minus(const ImuState& a, const ImuState& b)
     return e;
 }
 
-void move(ImuState& s, const Vec3d& rate, const Vec3d& force, double dt, ImuState::Square& change)
+void move(ImuState& s, const Vec3d& rate, const Vec3d& force, double dt, ImuState::Matrix& change)
 {
     const Vec3d turn = (rate - s.rate) * dt;
     const Matx33d middle = s.rotation * turnBy(turn / 2), one = Matx33d::eye();
     const Vec3d felt = middle * (force - s.force);
-    change = ImuState::Square::eye();
+    change = ImuState::Matrix::eye();
     setBlock(change, ImuState::TURN, ImuState::RATE, -dt * middle);
     setBlock(change, ImuState::POSITION, ImuState::TURN, -dt * dt / 2 * crossProduct(felt));
     setBlock(change, ImuState::POSITION, ImuState::VELOCITY, dt * one);
@@ -66,10 +66,10 @@ void move(ImuState& s, const Vec3d& rate, const Vec3d& force, double dt, ImuStat
 }
 
 bool follow(const std::vector<ImuReading>& readings, int64 from, int64 to, ImuState& state,
-        ImuState::Square* covariance, ImuState::Square* change)
+        ImuState::Matrix* covariance, ImuState::Matrix* change)
 {
     if (covariance)
-        *change = ImuState::Square::eye();
+        *change = ImuState::Matrix::eye();
     if (readings.empty() || readings.front().nanoseconds > from || readings.back().nanoseconds < to)
         return false;
     const auto later = [](int64 time, const ImuReading& r) { return time < r.nanoseconds; };
@@ -84,12 +84,12 @@ bool follow(const std::vector<ImuReading>& readings, int64 from, int64 to, ImuSt
         const double share = (.5 * double(now - a.nanoseconds) + .5 * double(end - a.nanoseconds)) /
                              double(b.nanoseconds - a.nanoseconds);
         const double dt = double(end - now) * 1e-9;
-        ImuState::Square step;
+        ImuState::Matrix step;
         move(state, a.rate + share * (b.rate - a.rate), a.force + share * (b.force - a.force), dt, step);
         now = end;
         if (!covariance)
             continue;
-        ImuState::Square& c = *covariance;
+        ImuState::Matrix& c = *covariance;
         c = step * c * step.t();
         for (int i = 0; i < 3; i++)
         {

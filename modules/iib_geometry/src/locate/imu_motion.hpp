@@ -21,7 +21,7 @@ struct ImuState
         SIZE = 18
     };
     typedef Vec<double, SIZE> Errors;
-    typedef Matx<double, SIZE, SIZE> Square;
+    typedef Matx<double, SIZE, SIZE> Matrix;
 
     Matx33d rotation = Matx33d::eye();  //!< world from IMU
     Vec3d position, velocity;           //!< m, m/s
@@ -37,12 +37,12 @@ ImuState::Errors minus(const ImuState& a, const ImuState& b);
     R' = R Exp(w dt),   v' = v + (R f + g) dt,   p' = p + v dt + (R f + g) dt^2 / 2,
 with rate w and force f less their biases, and R in the middle of the turn.
 @param change gets the derivatives of the new errors by the old ones, in each block to the lowest order of dt. */
-void move(ImuState& state, const Vec3d& rate, const Vec3d& force, double dt, ImuState::Square& change);
+void move(ImuState& state, const Vec3d& rate, const Vec3d& force, double dt, ImuState::Matrix& change);
 
 /** Moves a state from one time to another; readings are linear between their times. False if they do not reach that far or have a
 gap. @param covariance of the state, if not null; then change gets how errors change on the way. */
 bool follow(const std::vector<ImuReading>& readings, int64 from, int64 to, ImuState& state,
-        ImuState::Square* covariance, ImuState::Square* change);
+        ImuState::Matrix* covariance, ImuState::Matrix* change);
 
 /** The covariance of a place and of a turn, that of another place of the same body: dp' = dp - [way]x dw.
 @param way there, along the world's axes. */

@@ -41,7 +41,7 @@ struct ImuFrame
 struct Step
 {
     ImuState expected, state;
-    ImuState::Square expectedCovariance, covariance, change;
+    ImuState::Matrix expectedCovariance, covariance, change;
 };
 
 //! Where a number of a pose, position and turn as in covariances of images, is in a state's error.
@@ -50,7 +50,7 @@ int place(int i) { return i < 3 ? ImuState::POSITION + i : ImuState::TURN + i - 
 /** Takes a measured pose into a state: position and turn about the world's axes with their covariance (Kalman 1960). With H the rows
 of these six and P the state's covariance, the gain is K = P H' (H P H' + R)^-1, and P' = P - K H P.
 @return its innovation's squared length in standard deviations, whose square is chi^2 of six degrees of freedom. */
-double update(const Affine3d& pose, const Matx66d& measured, ImuState& state, ImuState::Square& covariance)
+double update(const Affine3d& pose, const Matx66d& measured, ImuState& state, ImuState::Matrix& covariance)
 {
     ImuState seen = state;
     seen.rotation = pose.rotation();
@@ -199,7 +199,7 @@ void smooth(std::vector<Step>& steps)
     {
         Step& step = steps[i];
         const Step& next = steps[i + 1];
-        const ImuState::Square gain =
+        const ImuState::Matrix gain =
                 step.covariance * next.change.t() * next.expectedCovariance.inv(DECOMP_CHOLESKY);
         step.state = plus(step.state, gain * minus(next.state, next.expected));
         step.covariance += gain * (next.covariance - next.expectedCovariance) * gain.t();

@@ -173,12 +173,12 @@ Location inFile(Location location, const Photograph& image)
 struct Localizer::Impl
 {
     Impl(Map&& read, int points, bool lines)
-        : map(std::move(read)), finder(map, points, lines), cameras(camerasOf(map.images))
+        : map(std::move(read)), locator(map, points, lines), cameras(camerasOf(map.images))
     {
     }
 
     const Map map;
-    const ImageLocator finder;
+    const ImageLocator locator;
     const std::vector<Camera> cameras;
 };
 
@@ -203,7 +203,7 @@ Location Localizer::localize(
         InputArray image, const Camera& camera, const Affine3d* prior, int orientation, InputArray mask) const
 {
     const Photograph photograph(image.getMat(), orientation, mask.getMat());
-    return inFile(impl_->finder.find(photograph, camera, prior).location, photograph);
+    return inFile(impl_->locator.find(photograph, camera, prior).location, photograph);
 }
 
 }  // namespace cv::iib

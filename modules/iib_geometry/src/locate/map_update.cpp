@@ -154,13 +154,13 @@ void makeRoom(Map& map, const std::vector<const LocatedImage*>& added)
 struct MapUpdate::Impl
 {
     Impl(const std::string& from, const std::string& to)
-        : folder(to), map(readMap(from)), finder(map, 0, !map.lines.empty()), cameras(camerasOf(map.images))
+        : folder(to), map(readMap(from)), locator(map, 0, !map.lines.empty()), cameras(camerasOf(map.images))
     {
     }
 
     const MapFolder folder;  // is locked before the map is read
     const Map map;
-    const ImageLocator finder;
+    const ImageLocator locator;
     const std::vector<Camera> cameras;
     std::mutex mutex;
     std::set<std::string> names;
@@ -196,7 +196,7 @@ Location MapUpdate::add(
     }
     try
     {
-        LocatedImage found = impl_->finder.find(photograph, camera);
+        LocatedImage found = impl_->locator.find(photograph, camera);
         found.features.name = name;
         const std::lock_guard<std::mutex> lock(impl_->mutex);
         impl_->checkOpen();

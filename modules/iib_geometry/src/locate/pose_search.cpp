@@ -99,7 +99,7 @@ public:
             return false;
         for (int round = 0; round < ROUNDS; round++)
         {
-            if (round > 0 && !refined(inliers_))
+            if (round > 0 && !refine(inliers_))
                 return false;
             inliers_ = near(matches_);
             location_.inliers = keypointsOf(inliers_);
@@ -132,7 +132,7 @@ public:
             for (const Match& m : near(guidedMatches(views_, found_.compared, lens_, frame_, pose_)))
                 used_.push_back(m);
             learnDeviation(used_, lens_, pose_);
-            if (!refined(used_))
+            if (!refine(used_))
                 return false;
             inliers_ = near(used_);
             moved = lens_.matrix()(0, 0) * distance(pose_, before, depth());
@@ -148,7 +148,7 @@ public:
             for (const Match& m :
                     lineMatches(map_, found_.compared, found_.segments, lens_, frame_, pose_, limit_))
                 used_.push_back(m);
-            if (!refined(used_))
+            if (!refine(used_))
                 return false;
             inliers_ = near(inliers_);
         }
@@ -204,7 +204,7 @@ private:
 
     double depth() const { return medianDistance(inCamera(pointsOf(inliers_), pose_)); }
 
-    bool refined(const std::vector<Match>& matches)
+    bool refine(const std::vector<Match>& matches)
     {
         return determined(refinePose(matches, lens_, pose_, covariance_));
     }

@@ -13,7 +13,7 @@ namespace cv::iib {
 namespace {
 
 constexpr double MAX_ERROR = 4;  // pixels, of a match from its epipolar line
-constexpr int BAND = 32;         // rows of a mask that are made at once
+constexpr int MASK_ROWS = 32;    // of a mask that are made at once: all are too much for the caches
 constexpr double NEAR = 2;       // pixels, within which matches are looked for once more
 constexpr int STRONGEST = 200;   // codes of an image: they tell whether the poses are the images'
 constexpr double FAR = .01;      // radians between rays that do not tell on which side they meet
@@ -40,11 +40,11 @@ Mat nearEpipolar(const std::vector<Ray>& a, const std::vector<Ray>& b)
                 .reshape(1, 1)
                 .copyTo(planes.row(int(i)));
     Mat mask(directions.rows, planes.rows, CV_8U), products;
-    for (int row = 0; row < mask.rows; row += BAND)  // all at once would be too much memory for the caches
+    for (int row = 0; row < mask.rows; row += MASK_ROWS)
     {
-        const Range band(row, std::min(row + BAND, mask.rows));
-        gemm(directions.rowRange(band), planes, 1, noArray(), 0, products, GEMM_2_T);
-        compare(abs(products), NEAR / a[0].scale, mask.rowRange(band), CMP_LT);
+        const Range rows(row, std::min(row + MASK_ROWS, mask.rows));
+        gemm(directions.rowRange(rows), planes, 1, noArray(), 0, products, GEMM_2_T);
+        compare(abs(products), NEAR / a[0].scale, mask.rowRange(rows), CMP_LT);
     }
     return mask;
 }

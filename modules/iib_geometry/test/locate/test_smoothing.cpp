@@ -142,12 +142,12 @@ TEST(Smoothing, derivatives_are_those_of_finite_differences)
         begin[i] = .1 * (i + 1) * (i % 2 ? 1 : -1);
     const S state = plus(S(), begin);
     const double dt = 1e-3, times[] = {dt, dt * dt, dt, 1, 1, 1};
-    const auto movedBy = [&](const S::Errors& errors, S::Square& change) {
+    const auto movedBy = [&](const S::Errors& errors, S::Matrix& change) {
         S at = plus(state, errors);
         move(at, cv::Vec3d(1, -.5, .7), cv::Vec3d(3, -4, 8), dt, change);
         return at;
     };
-    S::Square change, unused;
+    S::Matrix change, unused;
     const S after = movedBy(S::Errors(), change);
     cv::Mat_<double> told = cv::Mat_<double>(cv::Mat(change));
     for (int i = 0; i < S::SIZE; i++)

@@ -92,7 +92,7 @@ public:
     @param mapping one of #Mapping.
     @param overlap slide the 2x2 window of cells by one cell instead of two: (2^g - 1)^2 quads a level.
     @param useOrientation whether setOrientation(#ORIENTATION_KEYPOINT) is called at once.
-    @param extraChannels number of maps of the image's size that computeWithChannels is given, 0 to 16.
+    @param extraChannels number of channels of the image's size that computeWithChannels is given, 0 to 16.
     @throws cv::Exception (StsBadArg or StsOutOfRange) for a value outside these ranges.
      */
     CV_WRAP static Ptr<IIBDescriptorExtractor> create(float scaleFactor = 2.f, int granularity = 4,
@@ -176,7 +176,7 @@ public:
     CV_WRAP virtual std::vector<int> levelSizes() const = 0;
 
     using Feature2D::compute;
-    /** @brief Describes keypoints with the image and with further maps of it, such as depth or labels.
+    /** @brief Describes keypoints with the image and with further channels, such as depth or labels.
 
     @param image 8U, 16U or 32F with 1, 3 (BGR) or 4 (BGRA) channels. Float values are cut into 65535
     steps between the image's own minimum and maximum.

@@ -18,7 +18,7 @@ that is: least-squares matching, to a tenth of a pixel and better, also where th
 
 Both images are normalized locally. The patch around the point of the first image, about 30 pixels wide, stays where it
 is. It is laid onto the second image, turned and scaled as the keypoints' angles and sizes say, and moved and deformed
-(six parameters of an affine map, besides contrast and brightness) until the squared differences are least: the
+(six parameters of an affine transform, besides contrast and brightness) until the squared differences are least: the
 adjustment of
 @cite Foerstner1982 and @cite Gruen1985, solved with the matrix of the first patch alone, as the inverse compositional
 algorithm of @cite BakerMatthews2004 does. A match is refused where that moves its point by 2 pixels or more, or where
