@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""Mean errors of `opencv-iib localize` in each light, with the paper's points, with lines and with an IMU: setups.py OUT.csv STREET [VIEWS]
+"""Mean errors of `opencv-iib localize` in each light, with the paper's points, with lines and with an IMU: setups.py OUT.csv STREET
 
-Needs what measure.py needs. STREET: what tools/synthetic/localization.py rendered; VIEWS: what views.py rendered, other places, whose images count together.
+Needs what measure.py needs. STREET: what tools/synthetic/localization.py rendered.
 """
 import collections
 import csv
@@ -38,18 +38,16 @@ def write(out, counts, errors):
 
 
 def main():
-    out, street, *views = map(pathlib.Path, sys.argv[1:])
-    others = [('other places', place, 1) for folder in views for place in sorted(folder.iterdir())]
-    places = [('1.4 m apart', street, 1), ('5.6 m apart', street, 4), *others]
+    out, street = map(pathlib.Path, sys.argv[1:])
     counts, errors = collections.Counter(), collections.defaultdict(list)
-    for name, place, step in places:
+    for name, step in (('1.4 m apart', 1), ('5.6 m apart', 4)):
         with tempfile.TemporaryDirectory() as work:
             work = pathlib.Path(work)
-            measure.write_model(work / 'model', *measure.read_place(place / 'map', step))
+            measure.write_model(work / 'model', *measure.read_place(street / 'map', step))
             for setup in SETUPS:
-                build(str(work / 'model'), str(place / 'map/images'), str(work / f'map{setup}'), lines='--lines' in setup,
+                build(str(work / 'model'), str(street / 'map/images'), str(work / f'map{setup}'), lines='--lines' in setup,
                       orb_and_akaze='--orb-and-akaze' in setup)
-            for images in sorted((path.parent for path in place.glob('*/images') if path.parent.name != 'map'), key=lambda path: path.name != 'night'):
+            for images in sorted((path.parent for path in street.glob('*/images') if path.parent.name != 'map'), key=lambda path: path.name != 'night'):
                 readings = images / 'imu.csv'
                 for setup in SETUPS + (('--orb-and-akaze --lines --imu',) if readings.exists() else ()):
                     options = ['--lines'] * ('--lines' in setup) + (['--imu', readings] if '--imu' in setup else [])
