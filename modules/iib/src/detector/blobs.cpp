@@ -4,6 +4,7 @@
 
 #include "blobs.hpp"
 
+#include "../common/file_numbers.hpp"
 #include "scale_space.hpp"
 
 #include <tuple>
@@ -194,6 +195,19 @@ private:
 };
 
 }  // namespace
+
+void HessianParameters::check() const
+{
+    require(maxFeatures >= 0, "maxFeatures", maxFeatures, "0 (all) or more");
+    require(threshold >= 0 && threshold < std::numeric_limits<float>::infinity(), "threshold", threshold,
+            "0 or more, and finite");
+    require(scales >= 1 && scales <= 8, "scales", scales, "1 to 8");
+    require(sigma >= 1.5f && sigma <= 8, "sigma", sigma, "1.5 to 8 pixels");
+    require(normalizationSigma >= 2 && normalizationSigma <= 256, "normalizationSigma", normalizationSigma,
+            "2 to 256 pixels");
+    require(workingSize == 0 || workingSize >= 64, "workingSize", workingSize,
+            "64 pixels or more, or 0 (any)");
+}
 
 std::vector<KeyPoint> findBlobs(
         const Mat& normalized, const HessianParameters& parameters, const Mat& mask, int reduction)

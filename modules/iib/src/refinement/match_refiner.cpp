@@ -21,12 +21,12 @@ const size_t VOTING_MATCHES = 64;   //!< for the turn, each with each other
 const double LEAST_WITH_WARP = .4;  //!< similarity at the start: most tries are wrong, and end here
 const double MATCHES_OF_A_THREAD = 8;
 
-Mat checked(InputArray image, int number)
+Mat checked(InputArray image, const char* name)
 {
     const Mat pixels = image.getMat();
     if (pixels.empty())
         CV_Error(Error::StsBadArg,
-                format("image %d is empty, but there are matches: did imread find the file?", number));
+                format("%s is empty, but there are matches: did imread find the file?", name));
     checkImage(pixels);
     return pixels;
 }
@@ -57,7 +57,8 @@ struct MatchRefiner::Start
 };
 
 PreparedImage::PreparedImage(InputArray image)
-    : pixels(preparedForAlignment(normalizeLocally(integerMap(checked(image, 1)), NORMALIZATION_SIGMA)))
+    : pixels(preparedForAlignment(
+              normalizeLocally(integerMap(checked(image, "the image")), NORMALIZATION_SIGMA)))
 {
 }
 
@@ -65,7 +66,7 @@ PreparedPair::PreparedPair(InputArray image1, InputArray image2, const std::vect
 {
     if (matches.empty())
         return;
-    const Mat pixels[] = {checked(image1, 1), checked(image2, 2)};
+    const Mat pixels[] = {checked(image1, "image 1"), checked(image2, "image 2")};
     const auto prepare = [&](const Range& range) {
         for (int i = range.start; i < range.end; i++)
             images[i] = PreparedImage(pixels[i]);
