@@ -34,7 +34,7 @@ branch_of() {
     */code_layout.hpp | */packed_codes.hpp | */checked_file.*) echo matcher ;;
     */test_match_rotated.cpp | */test_rotated.cpp | */test_orientation.cpp | */test_instruction_sets.cpp | */test_stress.cpp | */test_detectors.cpp | */*_fixtures.cpp) echo matcher ;;
     *refinement* | */perf_chains.cpp | */prepared_image.hpp | /README.md | /misc/* | /samples/* | /tutorials/*) echo refinement ;;
-    */descriptor[/.]* | *_descriptor.cpp | */descriptor_oracle.* | */box_oracle.cpp | */describe.* | */format.md) echo descriptor ;;
+    */descriptor[/.]* | *_descriptor.cpp | */descriptor_oracle.* | */box_oracle.cpp | */places.hpp | */describe.* | */format.md) echo descriptor ;;
     *) echo detector ;;
     esac
 }

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "iib/src/descriptor/parameters.hpp"
+#include "opencv2/iib/detail/places.hpp"
 
 namespace iib_tools {
 namespace {

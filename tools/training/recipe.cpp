@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-#include "iib/src/descriptor/parameters.hpp"
+#include "opencv2/iib/detail/places.hpp"
 
 namespace iib_tools {
 namespace {
@@ -31,12 +31,14 @@ std::string masksOf(const IIB& preset)
     for (int i = 0; i < quads.rows; i++)
         masks[{{quads(i, 0), quads(i, 2), quads(i, 3), quads(i, 1)}}] = quads(i, 4);
     std::string digits, text;
-    const cv::iib::Parameters all = {
-            1.f, preset.getGranularity(), preset.getChannels(), preset.getMapping(), true, 0, 0, 0, {}};
     for (int level = 1; level <= preset.getGranularity(); level++)
-        cv::iib::forEachPlace(all, level, [&](int channel, int row, int column, int) {
-            digits += "0123456789abcdefghijklmnopqrstuv"[masks[{{level, row, column, channel}}]];
-        });
+    {
+        const int n = cv::iib::placesInRow(preset.getMapping(), level),
+                  channels = countBits(preset.getChannels());
+        for (int i = 0; i < n * n * channels; i++)
+            digits += "0123456789abcdefghijklmnopqrstuv"[masks[{
+                    {level, i / channels / n, i / channels % n, i % channels}}]];
+    }
     for (const char* run : {"z0000000000000000", "y00000000", "x0000", "w00"})
         for (size_t at; (at = digits.find(run + 1)) != std::string::npos;)
             digits.replace(at, std::strlen(run + 1), 1, *run);

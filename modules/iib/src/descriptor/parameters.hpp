@@ -42,19 +42,6 @@ struct Parameters
     }
 };
 
-//! Bits that a mapping makes of one quad.
-inline int bitsPerQuad(int mapping)
-{
-    static const int bits[] = {4, 4, 4, 8, 8, 3, 4};  // in the order of IIB::Mapping
-    return bits[mapping];
-}
-
-//! Rows, and columns, of the places that a selection names at a level: quads, also between siblings, or boxes.
-inline int placesInRow(int mapping, int level)
-{
-    return mapping == IIB::MAPPING_BOXES ? BOX_GRIDS[level - 1].n : (1 << level) - 1;
-}
-
 //! The bits that there are at a place, as in the mask of a selection. @param kind of the channel.
 inline int bitsOfPlace(int mapping, int kind, int level, int row, int col)
 {

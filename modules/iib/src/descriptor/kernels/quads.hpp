@@ -8,12 +8,12 @@
 
 #include "../../common/aligned_buffer.hpp"
 #include "../../common/bit_io.hpp"
+#include "opencv2/iib/detail/places.hpp"
 
 namespace cv {
 namespace iib {
 
 constexpr int MAX_GRANULARITY = 6;
-constexpr int GROUP_CHANNELS = 4;  //!< channels that integral images and kernels carry side by side
 
 /** Sums over the cells of one level, n x n cells of GROUP_CHANNELS channels each. The cells in even columns of a
  row lie side by side, and those in odd columns: the left and right cells of the quads. T is ushort or unsigned, as
