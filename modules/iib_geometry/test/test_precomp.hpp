@@ -4,4 +4,4 @@
 #include "opencv2/iib.hpp"
 #include "opencv2/iib_geometry.hpp"
 #include "opencv2/ts.hpp"
-#include "precomp.hpp"
+#include "../src/precomp.hpp"
