@@ -150,7 +150,7 @@ TEST(IIB_Boxes, selections)
         expectOracle(*iib, image, scatter(image.size(), 6, 10.f, 200.f, count));
     }
     const Ptr<IIB> last = boxes();
-    const Mat single = (Mat_<int>(2, 5) << 4, 3, 8, 8, 8, 5, 4, 0, 6, 16);
+    const Mat single = Mat_<int>({2, 5}, {4, 3, 8, 8, 8, 5, 4, 0, 6, 16});
     last->setSelection(single);
     EXPECT_EQ((std::vector<int>{1, 1}), last->levelSizes());
     expectOracle(*last, image, scatter(image.size(), 6, 10.f, 200.f, 1));
@@ -170,9 +170,9 @@ TEST(IIB_Boxes, errors)
     expectError(Error::StsBadArg, "extra channels",
             [] { IIB::create(1.f, 3, ALL, IIB::MAPPING_BOXES, false, false, 1); });
     expectError(Error::StsBadArg, "overlap", [] { IIB::create(1.f, 3, ALL, IIB::MAPPING_BOXES, true); });
-    const Mat_<int> outside[] = {(Mat_<int>(1, 5) << 1, 0, 3, 0, 1), (Mat_<int>(1, 5) << 1, 0, 0, 3, 1),
-            (Mat_<int>(1, 5) << 1, 0, 2, 0, 1), (Mat_<int>(1, 5) << 1, 1, 0, 0, 8),
-            (Mat_<int>(1, 5) << 1, 0, 0, 0, 16), (Mat_<int>(1, 5) << 1, 0, 0, 0, 0)};
+    const Mat_<int> outside[] = {Mat_<int>({1, 5}, {1, 0, 3, 0, 1}), Mat_<int>({1, 5}, {1, 0, 0, 3, 1}),
+            Mat_<int>({1, 5}, {1, 0, 2, 0, 1}), Mat_<int>({1, 5}, {1, 1, 0, 0, 8}),
+            Mat_<int>({1, 5}, {1, 0, 0, 0, 16}), Mat_<int>({1, 5}, {1, 0, 0, 0, 0})};
     for (const Mat_<int>& selection : outside)
         expectError(Error::StsOutOfRange, "selection, row 0", [&] { boxes()->setSelection(selection); });
 }

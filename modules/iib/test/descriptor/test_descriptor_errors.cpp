@@ -15,7 +15,7 @@ void expectComputeError(IIB& iib, int code, const String& culprit, const Mat& im
         const std::vector<Mat>& extra,
         const std::vector<KeyPoint>& keypoints = std::vector<KeyPoint>(3, KeyPoint(1, 1, 20)))
 {
-    const Mat before = (Mat_<float>(1, 2) << 3, 4);
+    const Mat before = Mat_<float>({1, 2}, {3, 4});
     for (int border = 0; border < 2; border++)
     {
         iib.setBorder(border);

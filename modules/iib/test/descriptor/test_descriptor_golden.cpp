@@ -65,7 +65,7 @@ Mat someQuads()
         for (int i = 0; i < 6; i++)
         {
             const int n = (1 << level) - 1;
-            const Mat_<int> quad = (Mat_<int>(1, 5) << level, (i + level) % 4, i * 5 % n, i / n, 1 + i * 2);
+            const Mat_<int> quad = Mat_<int>({1, 5}, {level, (i + level) % 4, i * 5 % n, i / n, 1 + i * 2});
             if (i < 1 || level > 1)
                 quads.push_back(quad);
         }

@@ -20,7 +20,7 @@ std::vector<Ptr<IIB>> variousExtractors()
     v.push_back(IIB::create(1.f, 3, 63, IIB::MAPPING_SORT, true));
     v.push_back(IIB::create(1.f, 5, 63, IIB::MAPPING_HAAR, false, true));
     v.push_back(IIB::create(1.f, 2, 15));
-    const Mat quads = (Mat_<int>(2, 5) << 1, 0, 0, 0, 3, 2, 3, 1, 2, 15);
+    const Mat quads = Mat_<int>({2, 5}, {1, 0, 0, 0, 3, 2, 3, 1, 2, 15});
     v.back()->setSelection(quads);
     return v;
 }

@@ -24,7 +24,7 @@ void expectSame(const IIB& expected, const IIB& actual)
                 cvtest::norm(expected.getSelection(), actual.getSelection(), NORM_INF) == 0);
 }
 
-Mat_<int> someQuads() { return (Mat_<int>(3, 5) << 1, 2, 0, 0, 255, 3, 0, 5, 6, 9, 3, 3, 0, 2, 64); }
+Mat_<int> someQuads() { return Mat_<int>({3, 5}, {1, 2, 0, 0, 255, 3, 0, 5, 6, 9, 3, 3, 0, 2, 64}); }
 
 //! No parameter has its default value.
 Ptr<IIB> unusual()

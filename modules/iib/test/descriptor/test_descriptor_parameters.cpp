@@ -23,7 +23,7 @@ TEST(IIB_Parameters, names_and_sizes)
     iib->setMapping(IIB::MAPPING_HAAR);
     EXPECT_EQ((std::vector<int>{1, 3, 12, 48}), iib->levelSizes());
     iib->setChannels(IIB::CHANNELS_DEFAULT);
-    const Mat quads = (Mat_<int>(2, 5) << 1, 0, 0, 0, 7, 4, 3, 14, 0, 1);
+    const Mat quads = Mat_<int>({2, 5}, {1, 0, 0, 0, 7, 4, 3, 14, 0, 1});
     iib->setSelection(quads);
     EXPECT_EQ((std::vector<int>{1, 1}), iib->levelSizes());  // levels without a bit are left out
     EXPECT_EQ(2, iib->descriptorSize());
@@ -41,7 +41,7 @@ TEST(IIB_Parameters, setters_and_what_ends_a_selection)
             [](IIB& i, int change) { i.setMapping(change); },
             [](IIB& i, int change) { i.setOverlap(change != 0); },
             [](IIB& i, int change) { i.setExtraChannels(change); }};
-    const Mat quads = (Mat_<int>(1, 5) << 2, 1, 0, 2, 5);
+    const Mat quads = Mat_<int>({1, 5}, {2, 1, 0, 2, 5});
     const Ptr<IIB> iib = IIB::create();
     EXPECT_TRUE(iib->getSelection().empty());
     iib->setSelection(quads);
@@ -74,7 +74,7 @@ void expectParameterError(int code, const String& culprit, const Create& create,
 {
     expectError(code, culprit, create);
     const Ptr<IIB> iib = IIB::create(3.f, 3, 5, IIB::MAPPING_HAAR, true, true, 2);
-    const Mat quad = (Mat_<int>(1, 5) << 3, 1, 2, 2, 7);
+    const Mat quad = Mat_<int>({1, 5}, {3, 1, 2, 2, 7});
     iib->setSelection(quad);
     expectError(code, culprit, [&] { set(*iib); });
     EXPECT_EQ(3.f, iib->getScaleFactor());
@@ -127,7 +127,7 @@ TEST(IIB_Parameters, mistakes_throw_and_change_nothing)
 TEST(IIB_Parameters, mistakes_in_selections)
 {
     const Ptr<IIB> iib = IIB::create(2.f, 3, 3, IIB::MAPPING_HAAR);
-    const Mat kept = (Mat_<int>(1, 5) << 1, 0, 0, 0, 1);
+    const Mat kept = Mat_<int>({1, 5}, {1, 0, 0, 0, 1});
     iib->setSelection(kept);
     struct
     {
@@ -137,17 +137,17 @@ TEST(IIB_Parameters, mistakes_in_selections)
     } cases[] = {{Error::StsBadArg, "32FC1 with 5", Mat(1, 5, CV_32F, Scalar(1))},
             {Error::StsBadArg, "with 4", Mat(2, 4, CV_32S, Scalar(1))},
             {Error::StsBadArg, "32SC5", Mat(1, 1, CV_32SC(5))},
-            {Error::StsOutOfRange, "row 0: level 0", (Mat_<int>(1, 5) << 0, 0, 0, 0, 1)},
-            {Error::StsOutOfRange, "row 0: level 4", (Mat_<int>(1, 5) << 4, 0, 0, 0, 1)},
-            {Error::StsOutOfRange, "row 1: level 2", (Mat_<int>(2, 5) << 3, 0, 0, 0, 1, 2, 0, 0, 0, 1)},
-            {Error::StsOutOfRange, "row 0: channel 2", (Mat_<int>(1, 5) << 1, 2, 0, 0, 1)},
-            {Error::StsOutOfRange, "row 0: channel -1", (Mat_<int>(1, 5) << 1, -1, 0, 0, 1)},
-            {Error::StsOutOfRange, "row 0: cell (3, 0)", (Mat_<int>(1, 5) << 2, 0, 3, 0, 1)},
-            {Error::StsOutOfRange, "row 0: cell (0, -1)", (Mat_<int>(1, 5) << 2, 0, 0, -1, 1)},
-            {Error::StsOutOfRange, "row 0: bit mask 8", (Mat_<int>(1, 5) << 2, 0, 0, 0, 8)},
-            {Error::StsOutOfRange, "row 0: bit mask 0", (Mat_<int>(1, 5) << 2, 0, 0, 0, 0)},
+            {Error::StsOutOfRange, "row 0: level 0", Mat_<int>({1, 5}, {0, 0, 0, 0, 1})},
+            {Error::StsOutOfRange, "row 0: level 4", Mat_<int>({1, 5}, {4, 0, 0, 0, 1})},
+            {Error::StsOutOfRange, "row 1: level 2", Mat_<int>({2, 5}, {3, 0, 0, 0, 1, 2, 0, 0, 0, 1})},
+            {Error::StsOutOfRange, "row 0: channel 2", Mat_<int>({1, 5}, {1, 2, 0, 0, 1})},
+            {Error::StsOutOfRange, "row 0: channel -1", Mat_<int>({1, 5}, {1, -1, 0, 0, 1})},
+            {Error::StsOutOfRange, "row 0: cell (3, 0)", Mat_<int>({1, 5}, {2, 0, 3, 0, 1})},
+            {Error::StsOutOfRange, "row 0: cell (0, -1)", Mat_<int>({1, 5}, {2, 0, 0, -1, 1})},
+            {Error::StsOutOfRange, "row 0: bit mask 8", Mat_<int>({1, 5}, {2, 0, 0, 0, 8})},
+            {Error::StsOutOfRange, "row 0: bit mask 0", Mat_<int>({1, 5}, {2, 0, 0, 0, 0})},
             {Error::StsBadArg, "row 1: the quad was given before",
-                    (Mat_<int>(2, 5) << 2, 0, 0, 0, 1, 2, 0, 0, 0, 2)}};
+                    Mat_<int>({2, 5}, {2, 0, 0, 0, 1, 2, 0, 0, 0, 2})}};
     for (const auto& c : cases)
         expectError(c.code, c.culprit, [&] { iib->setSelection(c.selection); });
     EXPECT_EQ(0, cvtest::norm(kept, iib->getSelection(), NORM_INF));

@@ -87,7 +87,7 @@ TEST(IIB_MatcherFile, format_1_stays_readable)
     EXPECT_EQ(std::vector<float>(1, 0.25f), matcher->getThresholds());
     EXPECT_TRUE(matcher->getCrossCheck());
     EXPECT_EQ(0.5f, matcher->getMaxRatio());
-    const Mat expected = (Mat_<uchar>(2, 3) << 1, 2, 3, 250, 251, 252);
+    const Mat expected = Mat_<uchar>({2, 3}, {1, 2, 3, 250, 251, 252});
     EXPECT_EQ(0, cvtest::norm(expected, matcher->getTrainDescriptors()[0], NORM_INF));
     matcher->saveIndex(file.name);
     EXPECT_EQ(std::string((const char*)bytes, sizeof(bytes)), file.read());

@@ -169,8 +169,8 @@ TEST(IIB_MatcherEdges, no_limit_on_rows_and_images)
 // opencv#11855
 TEST(IIB_MatcherEdges, cross_check_with_compact_result)
 {
-    const Mat trains = (Mat_<uchar>(2, 3) << 1, 1, 0, 1, 1, 1),
-              queries = (Mat_<uchar>(2, 3) << 1, 1, 1, 0, 0, 0);
+    const Mat trains = Mat_<uchar>({2, 3}, {1, 1, 0, 1, 1, 1}),
+              queries = Mat_<uchar>({2, 3}, {1, 1, 1, 0, 0, 0});
     const Ptr<HierarchicalMatcher> matcher =
             HierarchicalMatcher::create(std::vector<int>(1, 3), HierarchicalMatcher::EXACT, 0.35f, true);
     Matches matches;
