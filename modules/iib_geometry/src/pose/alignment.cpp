@@ -182,13 +182,13 @@ Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, 
     const Verdict::Marks moved = movedBeside(richest, points, LEAST_PARALLAX, verdict);
     if (verdict.places(moved) > MOST_PARALLAX * verdict.places(richest.agree))
         return {format("%d matches agree with one transform, and %d more are beside it along lines through "
-                       "one "
-                       "point: the camera moved through a scene that is not flat (parallax; findRelativePose "
-                       "is "
-                       "for such images), or a part of what it sees moved one way, as shadows do",
+                       "one point: the camera moved through a scene that is not flat (parallax; "
+                       "findRelativePose is for such images), or a part of what it sees moved one way, as "
+                       "shadows do",
                         richest.count(), countOf(moved)),
                 true};
-    const Spread spread(points, aligned.agree, aligned.problem.inPixels(aligned.fit.model), pair);
+    const Spread spread(points, aligned.agree, aligned.problem.inPixels(aligned.fit.model), pair,
+            aligned.problem.sampleSize());
     if (spread.area < LEAST_SPREAD || spread.whole < LEAST_WHOLE)
         return {format("the images share %.0f %% of what both could show and nothing else: a logo, a "
                        "caption?",

@@ -21,6 +21,45 @@ double areaOf(const Points& points)
     return contourArea(hull);
 }
 
+//! Takes the points at these indices out.
+Points taken(Points& points, std::vector<int> indices)
+{
+    Points out;
+    std::sort(indices.begin(), indices.end(), std::greater<int>());
+    for (int i : indices)
+    {
+        out.push_back(points[i]);
+        points.erase(points.begin() + i);
+    }
+    return out;
+}
+
+//! The area that points span without the few that stretch it most, one after the other.
+double areaWithout(int few, Points points)
+{
+    Points outer;  // which are on the hull once the few before are out
+    std::vector<int> hull;
+    for (int layer = 0; layer <= few && !points.empty(); layer++)
+    {
+        convexHull(points, hull);
+        const Points next = taken(points, hull);
+        outer.insert(outer.end(), next.begin(), next.end());
+    }
+    for (; few > 0 && !outer.empty(); few--)
+    {
+        convexHull(outer, hull);
+        const auto areaWithoutOne = [&](int corner) {
+            Points others = outer;
+            taken(others, {corner});
+            return areaOf(others);
+        };
+        std::vector<double> areas;
+        std::transform(hull.begin(), hull.end(), std::back_inserter(areas), areaWithoutOne);
+        taken(outer, {hull[size_t(std::min_element(areas.begin(), areas.end()) - areas.begin())]});
+    }
+    return areaOf(outer);
+}
+
 std::vector<int> countsOfCells(const Points& points, const Rect& box)
 {
     std::vector<int> counts(CELLS_ACROSS * CELLS_ACROSS);
@@ -45,13 +84,12 @@ double scatterOf(const Points& agreeing, const Points& points)
 }  // namespace
 
 Spread::Spread(const AlignedPoints& points, const Verdict::Marks& agree, const Matx33d& transform,
-        const WorkingPair& pair)
+        const WorkingPair& pair, int sampleSize)
 {
     Points agreeing;
     for (size_t i = 0; i < agree.size(); i++)
         if (agree[i])
             agreeing.push_back(Point2f(points.reference.at<Point2d>((int)i)));
-    const double spanned = areaOf(agreeing);
     const Matx33d toImage = transform.inv();
     double least = std::numeric_limits<double>::max();
     for (int which = 0; which < 2; which++)
@@ -66,7 +104,7 @@ Spread::Spread(const AlignedPoints& points, const Verdict::Marks& agree, const M
         least = std::min(least, areaOf(common));
         scatter = std::max(scatter, scatterOf(agreeing, common));
     }
-    area = least > 0 ? spanned / least : 0;
+    area = least > 0 ? areaOf(agreeing) / least : 0;
 
     const Size size = pair.size(0);
     int both = 0;
@@ -77,7 +115,8 @@ Spread::Spread(const AlignedPoints& points, const Verdict::Marks& agree, const M
                     (row + .5) * size.height / SAMPLES_ACROSS - .5);
             both += pair.shows(0, p) && pair.shows(1, moved(toImage, p));
         }
-    whole = spanned * SAMPLES_ACROSS * SAMPLES_ACROSS / (std::max(both, 1) * (double)size.area());
+    whole = areaWithout(sampleSize, agreeing) * SAMPLES_ACROSS * SAMPLES_ACROSS /
+            (std::max(both, 1) * (double)size.area());
 }
 
 }  // namespace cv::iib

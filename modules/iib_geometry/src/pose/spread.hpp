@@ -13,12 +13,15 @@ elsewhere. */
 struct Spread
 {
     double area;         //!< that the matches span, over that of what shows
-    double whole;        //!< the same over the whole area that both images have and masks allow
+    /** The same over the whole area that both images have and masks allow, but without the few matches that stretch it most: a
+    transform bends towards as many wrong ones as determine it, such as some beside a logo. */
+    double whole;
     double scatter = 0;  //!< cells that they are in, over those in which as many of the points would be
 
-    //! @param transform from the image to the reference, working pixels.
+    /** @param transform from the image to the reference, working pixels.
+    @param sampleSize matches that determine one. */
     Spread(const AlignedPoints& points, const Verdict::Marks& agree, const Matx33d& transform,
-            const WorkingPair& pair);
+            const WorkingPair& pair, int sampleSize);
 };
 
 }  // namespace cv::iib

@@ -48,6 +48,19 @@ TEST(Alignment, refuses_pictures_that_share_a_part_alone_in_any_model)
     }
 }
 
+//! A homography bends towards some wrong matches far away, so that all span much.
+TEST(Alignment, refuses_a_part_that_a_homography_joins_with_wrong_matches)
+{
+    for (int seed : {27, 30, 60})
+    {
+        const Rect part(15, 15, 55, 55);
+        Mat first = picture(seed), second = picture(seed + 100), transform, matches;
+        for (const Mat& image : {first, second})
+            picture(13)(part).copyTo(image(part));
+        EXPECT_FALSE(alignImages(first, second, transform, ALIGN_HOMOGRAPHY, noArray(), matches)) << seed;
+    }
+}
+
 //! As with a logo in one corner and a caption, or two stamps, between which nothing agrees.
 TEST(Alignment, refuses_pictures_that_share_two_parts_alone)
 {
