@@ -12,7 +12,7 @@ What shows are the points that were looked for, of the image in which they are o
 elsewhere. */
 struct Spread
 {
-    double area;         //!< that the matches span, over that of what shows
+    double area;  //!< that the matches span, over that of what shows
     /** The same over the whole area that both images have and masks allow, but without the few matches that stretch it most: a
     transform bends towards as many wrong ones as determine it, such as some beside a logo. */
     double whole;
