@@ -16,7 +16,8 @@ inline void writeRows(const Mat& rows, OutputArray out)
     if (!out.needed())
         return;
     const int type = out.fixedType() ? out.type() : rows.type(), channels = CV_MAT_CN(type);
-    (channels == rows.cols ? rows.reshape(channels) : rows).convertTo(out, CV_MAT_DEPTH(type));
+    (channels == rows.cols ? rows.reshape(channels) : rows)
+            .convertTo(out, type);  // of no rows OpenCV 4.14 creates this type
 }
 
 }  // namespace iib
