@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#ifdef IIB_SAMPLE_LOCALIZE  // the program, where it is built
+#if defined IIB_SAMPLE_LOCALIZE && !defined _WIN32  // the program, where it is built, by a POSIX shell
 
 #include <cstdlib>
 

@@ -217,8 +217,10 @@ TEST_F(SmallMap, one_process_writes_at_a_time_and_what_comes_meanwhile_stays)
 {
     {
         const MapFolder made(name);
-        EXPECT_EQ(name + " is being written by another process: wait until it has ended",
-                messageOf([&] { MapFolder other(name); }));
+        // On Windows it goes on: which file to remove.
+        EXPECT_EQ(0u, messageOf([&] {
+            MapFolder other(name);
+        }).find(name + " is being written by another process: wait until it has ended"));
     }
     EXPECT_FALSE(cv::utils::fs::exists(name)) << "nothing was written";
     const MapFolder made(name);
@@ -232,6 +234,10 @@ TEST_F(SmallMap, one_process_writes_at_a_time_and_what_comes_meanwhile_stays)
 
 TEST_F(SmallMap, links_are_followed)
 {
+    std::error_code refused;
+    std::filesystem::create_symlink("nothing", folder.path("first"), refused);
+    if (refused)
+        throw SkipTestException("this system, or its user, makes no links: " + refused.message());
     folder.makeFolder("disk");
     for (const char* link : {"there", "new/"})
     {
