@@ -28,7 +28,7 @@ import pycolmap
 
 import opencv_iib
 from opencv_iib.colmap import FeatureOptions, Options, build_database
-from opencv_iib.colmap.features import to_colmap
+from opencv_iib.features import to_colmap
 from opencv_iib.keypoints import keypoints_to_array
 from opencv_iib.localization import Localizer, build
 

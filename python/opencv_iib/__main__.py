@@ -22,10 +22,10 @@ from opencv_iib._streams import STANDARD_OUTPUT, is_quiet, note, put, quiet
 from opencv_iib.align import INTERPOLATIONS, align
 from opencv_iib.colmap import hloc
 from opencv_iib.colmap.database import CAMERA_MODELS
-from opencv_iib.colmap.features import DETECTORS, FeatureOptions, preset_names
 from opencv_iib.colmap.pipeline import PAIRS, VERIFIERS, Options, build_database
 from opencv_iib.demo import demo
 from opencv_iib.enums import AlignmentModel
+from opencv_iib.features import DETECTORS, FeatureOptions, preset_names
 from opencv_iib.localization import Camera
 from opencv_iib.localization.imu_file import parse_pose
 from opencv_iib.match_list import match_list

@@ -22,8 +22,8 @@ from opencv_iib._images import FORMATS, Masks, can_be, decode_pages, find_images
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._upright import Turn, upright
-from opencv_iib.colmap.features import check_max_size
 from opencv_iib.enums import AlignmentModel
+from opencv_iib.features import check_max_size
 from opencv_iib.geometry import ImageAligner
 
 CORNERS = ('top_left', 'top_right', 'bottom_right', 'bottom_left')

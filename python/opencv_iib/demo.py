@@ -9,7 +9,7 @@ import numpy as np
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import check_images, check_outputs
 from opencv_iib._images import Masks, check_picture, import_cv2, read_with_orientation, write_picture
-from opencv_iib.colmap.features import FeatureOptions, Features, make_detector
+from opencv_iib.features import FeatureOptions, Features, make_detector
 from opencv_iib.functions import match
 from opencv_iib.keypoints import keypoints_to_array
 

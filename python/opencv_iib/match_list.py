@@ -19,9 +19,9 @@ from opencv_iib._images import Masks, check_sizes, find_images
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
-from opencv_iib.colmap.features import FeatureOptions, Features
 from opencv_iib.colmap.hloc import pair_name
 from opencv_iib.colmap.pairs import from_file, tiles
+from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.localization.localizer import AnyCamera, Camera, as_camera
 from opencv_iib.measure import Measured, View, measure
 

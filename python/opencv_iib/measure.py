@@ -14,10 +14,10 @@ from opencv_iib._arguments import InvalidOption, Path, sequence
 from opencv_iib._files import check_images, check_outputs, write_whole
 from opencv_iib._images import Masks, check_picture, import_cv2, read_with_orientation, write_picture
 from opencv_iib._upright import Turn, upright
-from opencv_iib.colmap.features import FeatureOptions, Features
 from opencv_iib.colmap.verify import show_the_same
 from opencv_iib.demo import GOOD, INK, OTHER, draw
 from opencv_iib.enums import Orientation
+from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.functions import match
 from opencv_iib.geometry import FoundPose, NoPose, findRelativePose
 from opencv_iib.localization.localizer import AnyCamera, Camera, as_camera

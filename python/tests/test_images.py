@@ -12,9 +12,9 @@ import numpy as np
 import opencv_iib
 from collection import Collection
 from opencv_iib.colmap import FeatureOptions
-from opencv_iib.colmap.features import DETECTORS, Features, to_colmap
 from opencv_iib._exif import SAMPLES, exif_focal_length, exif_orientation, geo_entries, gps_place, no_data, pages_of_tiff
 from opencv_iib._images import decode_grey, decode_pages, in_8_bits, read_colour, read_grey, write_picture
+from opencv_iib.features import DETECTORS, Features, to_colmap
 from support import cv2, texture
 
 

@@ -13,10 +13,10 @@ from unittest import mock
 import numpy as np
 
 from opencv_iib.align import align
-from opencv_iib.colmap.features import FeatureOptions
 from opencv_iib._exif import geo_entries, no_data
 from opencv_iib._files import RECORD
 from opencv_iib._images import decode_pages, write_picture
+from opencv_iib.features import FeatureOptions
 from opencv_iib.localization import Camera
 from opencv_iib.measure import match_images
 from opencv_iib.geometry import ImageAligner
@@ -203,7 +203,7 @@ class Match(Commands):
             self.check_mistake('is an input too', command, b, b, '--mask', a, option, a)
         self.assertEqual(Path(a).read_bytes(), before)
         # and what cannot be written is told before work
-        with mock.patch('opencv_iib.colmap.features.Features.__call__', side_effect=AssertionError):
+        with mock.patch('opencv_iib.features.Features.__call__', side_effect=AssertionError):
             self.check_mistake('no folder', 'match', a, b, '--out', self.folder / 'none/m.csv')
             self.check_mistake('no folder', 'match', a, b, '--picture', self.folder / 'none/m.png')
             self.check_mistake('end its name in', 'match', a, b, '--picture', self.folder / 'm.foo')

@@ -12,9 +12,9 @@ from collection import Collection
 from opencv_iib import _upright
 from opencv_iib.align import align
 from opencv_iib.colmap import FeatureOptions
-from opencv_iib.colmap.features import Features
 from opencv_iib._exif import exif_orientation
 from opencv_iib._images import read_with_orientation
+from opencv_iib.features import Features
 from opencv_iib.measure import match_images
 from opencv_iib.localization import Camera
 from support import cv2, optional, run_command, texture

@@ -20,8 +20,8 @@ from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib.colmap import pairs as pair_lists
 from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged, settings_of
-from opencv_iib.colmap.features import FeatureOptions, Features, to_colmap
 from opencv_iib.colmap.verify import colmap_binary, magsac, matches_importer
+from opencv_iib.features import FeatureOptions, Features, to_colmap
 from opencv_iib.localization.localizer import Camera
 from opencv_iib.matcher import HierarchicalMatcher
 

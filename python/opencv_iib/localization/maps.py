@@ -18,7 +18,7 @@ from opencv_iib._images import Masks, decode_grey, in_order
 from opencv_iib._parallel import thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
-from opencv_iib.colmap.features import MAX_POINTS, check_max_size
+from opencv_iib.features import MAX_POINTS, check_max_size
 from opencv_iib.localization.localizer import AnyCamera, Camera, Location
 from opencv_iib.localization.run import at_size, images_of, locate
 

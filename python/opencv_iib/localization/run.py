@@ -21,7 +21,7 @@ from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, imp
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import is_open_file, note
-from opencv_iib.colmap.features import check_max_size, reduced, resized_mask
+from opencv_iib.features import check_max_size, reduced, resized_mask
 from opencv_iib.localization.imu_file import by_time, read_imu
 from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Location, as_camera
 from opencv_iib.localization.smoothing import smooth_poses
