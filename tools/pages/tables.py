@@ -87,8 +87,8 @@ def learned_and_chain():
 def learned_limit():
     """README's sentence on learned features."""
     return ('- With a GPU take [learned features](doc/guide.md#learned-features): ALIKED with LightGlue is the best of all with 2048 points, {most_plain} as it is and\n'
-            '  {most} refined here; with 1000 it has {learned}, the chain {few} (in another run than above). 4000 points of the chain have {many}, in\n'
-            "  [1/{times} of the time](doc/results/README.md#learned-features-and-time) of ALIKED's 1000 (PyTorch, one thread, a busy CPU).").format(**learned_and_chain())
+            '  {most} refined here; with 1000 it has {learned}, the chain {few} (in another run than above). On one thread of a busy CPU, 4000 points of the\n'
+            "  chain have {many} and took [1/{times} of the time](doc/results/README.md#learned-features-and-time) of ALIKED's 1000 in PyTorch; no GPU was timed.").format(**learned_and_chain())
 
 
 def learned_guide():
@@ -323,8 +323,9 @@ def pose_claim():
         return max((row for row in rows('estimators.csv') if row['place'] == place and row['points'] in kinds and
                     all(row[key] == value for key, value in where.items())), key=lambda row: float(row['at_5']))
     sift, orb = (best('other light', descriptor=name) for name in ('SIFT', 'ORB'))
-    return ('On rendered places in other light, with 1000 points an image, the chain scores %s, of at most 1. The best of SIFT, at points of\n'
-            '`NormalizedDetector` and refined here, is %s, %s less on the same pairs, the best of ORB %s. In the same light\n'
+    return ('On rendered places in other light, with 1000 points an image, the chain scores %s, of at most 1. The most that any of the\n'
+            '[estimators tried](doc/results/README.md#poses) makes of SIFT, at points of `NormalizedDetector` and refined here, is %s, %s less on the same\n'
+            'pairs, of ORB %s; the table has three of the estimators. In the same light\n'
             "the chain gains nothing: SIFT's matches as they are have %s by PoseLib, the chain's refined ones %.2f ([all](doc/results/README.md#poses))." %
             (score(ours), score(sift), compared(sift), score(orb), same_light()['sift'], float(estimates()[CHAIN, 'same light', *WAYS[-1]]['at_5'])))
 
@@ -340,7 +341,7 @@ def photograph_claim():
     near = {line[0]: line[1:] for line in located_photographs()}
     chain, sift = near['recommended chain'], near['SIFT, normalized image']
     return ('Of photographs:\n'
-            '- *One statue*, %s photographs from noon to sunset, of unknown true poses: COLMAP joins %s reconstruction with the chain\'s points,\n'
+            '- *One statue*, %s photographs from noon to sunset; true poses are unknown, so this counts images alone: COLMAP joins %s reconstruction with the chain\'s points,\n'
             "  with SIFT's %s, with SIFT's on normalized images %s, by the code of %s ([how](doc/colmap.md#a-comparison)).\n"
             '- *Maps of five scenes* in one light: [`Localizer`](doc/maps.md#what-was-measured) places %s photographs within 5 cm and 0.5°, a program with SIFT on\n'
             '  normalized images, without our refinement, %s: level. Of photographs that a program has darkened and shaded it is %s and %s.\n'
@@ -385,8 +386,8 @@ def inside(level, quantity):
 
 def sure_claim():
     """The README's sentence on uncertainties."""
-    return ('- Uncertainties are no guarantee. Of errors of relative poses that should be inside what is told for 95 %%, %s of 100 were, by kind of data; of\n'
-            '  single points %s, wrong matches among them ([how sure](doc/uncertainty.md)).' % (inside('0.95', 'findRelativePose'), inside('0.95', 'refineMatches')))
+    return ('- Uncertainties are no guarantee. Told 95 %% bounds held for %s of 100 relative poses, by kind of data, and for %s of 100 single points,\n'
+            '  wrong matches among them ([how sure](doc/uncertainty.md)).' % (inside('0.95', 'findRelativePose'), inside('0.95', 'refineMatches')))
 
 
 def how_sure():
