@@ -4,4 +4,10 @@
 #include "opencv2/iib.hpp"
 #include "opencv2/iib_geometry.hpp"
 #include "opencv2/ts.hpp"
-#include "../src/precomp.hpp"
+
+// As src/precomp.hpp, which OpenCV's precompiled copy of this header would look for in another module.
+#if CV_VERSION_MAJOR >= 5
+#include "opencv2/geometry.hpp"
+#else
+#include "opencv2/calib3d.hpp"
+#endif
