@@ -88,9 +88,14 @@ TEST(Estimators, pose_of_two_views)
     {
         const bool relit = error.first.find("relit") != std::string::npos,
                    ours = error.first.find("find") != std::string::npos;
-        // Of AKAZE's few matches of a relit pair OpenCV 4.10's MAGSAC finds the opposite direction.
-        const bool few = relit && !ours && error.first.find("AKAZE") != std::string::npos;
-        EXPECT_LT(error.second, few ? 180 : relit ? 15 : ours ? 4 : 10) << error.first;
+        // Of AKAZE's few matches of the relit pair OpenCV 4.10's MAGSAC finds the opposite direction.
+        const bool opposite = CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR >= 10 && relit &&
+                              error.first.find("AKAZE") != std::string::npos &&
+                              error.first.find("MAGSAC") != std::string::npos;
+        if (!opposite)
+        {
+            EXPECT_LT(error.second, relit ? 15 : ours ? 4 : 10) << error.first;
+        }
     }
 
     // A wrong truth is a large error.
