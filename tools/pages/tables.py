@@ -282,7 +282,7 @@ def drop_in():
     def correct(place, detector, descriptor):
         row = found.get((place, detector, descriptor))
         return float(row['correct']) if row else None
-    gains = {(row.get('place', 'natural'), row['detector']): '%.2f (%.2f to %.2f)' % tuple(float(row[column]) for column in ('gain', 'low', 'high')) for row in rows('gains.csv')}
+    gains = {(row['place'], row['detector']): '%.2f (%.2f to %.2f)' % tuple(float(row[column]) for column in ('gain', 'low', 'high')) for row in rows('gains.csv')}
     for name in ('ORB', 'BRISK', 'AKAZE', 'KAZE', 'SIFT'):
         rivals = max(((float(row['correct']), descriptor) for (place, detector, descriptor), row in found.items()
                       if (place, detector) == ('natural', name) and re.match('[BT]EBLID', descriptor)), default=None)
