@@ -63,7 +63,11 @@ def propagateMatches(image1: Union[ArrayLike, _core.PreparedImage], keypoints1: 
     :return: distances of found matches are the largest float, since no descriptors were compared.
     :raises opencv_iib.error: as :func:`refineMatches`.
     """
-    images: list[Any] = [image if isinstance(image, _core.PreparedImage) else as_image(image) for image in (image1, image2)]
+    images: list[Any] = [image1, image2]
+    if any(isinstance(image, _core.PreparedImage) for image in images):
+        images = [image if isinstance(image, _core.PreparedImage) else prepared(image) for image in images]
+    else:
+        images = [as_image(image) for image in images]
     found, *rows = _core.propagateMatches(images[0], as_rows(keypoints1), images[1], as_rows(keypoints2), as_pairs(matches1to2))
     if isinstance(matches1to2, np.ndarray) or (len(matches1to2) and not hasattr(matches1to2[0], 'queryIdx')):
         return PropagatedMatches(found.reshape(-1, 4)[:, :2], *_rows(*rows))

@@ -387,7 +387,8 @@ def inside(level, quantity):
 def sure_claim():
     """The README's sentence on uncertainties."""
     return ('- Uncertainties are no guarantee. Told 95 %% bounds held for %s of 100 relative poses, by kind of data, and for %s of 100 single points,\n'
-            '  wrong matches among them ([how sure](doc/uncertainty.md)).' % (inside('0.95', 'findRelativePose'), inside('0.95', 'refineMatches')))
+            '  wrong matches among them, and %s of 100 corners of `alignImages` ([how sure](doc/uncertainty.md)).' % tuple(
+                inside('0.95', what) for what in ('findRelativePose', 'refineMatches', 'alignImages')))
 
 
 def how_sure():

@@ -32,8 +32,8 @@ sharp enough for it. The same input gives the same answer, whatever the number o
 There is no transform, and `reason` says which of these it was,
 - where the matches that agree are no more than chance (the number of false alarms, as of findRelativePose);
 - where they span less than 12 % of what has points in the image that has them over less of what both show (one may be masked, or black
-  elsewhere), or, without as many matches as determine a transform (those that stretch it most), 5 % of all that both show and masks
-  allow, as a logo or a caption that both hold; or where they lie in fewer than a third of the cells (of 8 x 8) in which as many
+  elsewhere), or 5 % of all that both show and masks allow, once the outermost matches, as many as determine the transform
+  (1 to 4), are left out, as a logo or a caption that both hold; or where they lie in fewer than a third of the cells (of 8 x 8) in which as many
   of the points would be, as of two captions;
 - where a transform of more freedom agrees better with the matches than noise would let it, by the likelihood of their errors, at
   the size at which they are matched, or at full size;

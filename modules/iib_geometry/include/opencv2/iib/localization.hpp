@@ -113,8 +113,8 @@ struct MapOptions
     bool lines = false;
     //! The paper's points, ORB's and AKAZE's together with IIB's default bits, in place of IIBDescriptorExtractor::createRecommended.
     bool orbAndAkaze = false;
-    //! Larger images are reduced to so many pixels of the longer side, 32 or more, to find and describe points, and to be kept in the map for
-    //! refinement, there at most 1024; 0: they are not.
+    //! Larger images are reduced to so many pixels of the longer side, 32 or more, to find and describe points; 0: they are not. What
+    //! is kept in the map for refinement has 1024 at most in any case.
     int maxSize = 0;
 };
 
