@@ -28,7 +28,7 @@ need $compiler_packages binutils python3-venv python3-dev
 
 wheels="$build/wheel"
 mkdir -p "$wheels"
-rm -f "$wheels"/*
+rm -f "$wheels"/*.tar.gz "$wheels"/*_"$("$1" -c 'import platform; print(platform.machine())')".whl  # others' stay
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
