@@ -11,7 +11,7 @@ best: upright, the strongest points without SIFT's copies of other orientations.
 
 All but ALIKED measured anew, whose means stay in doc/results:
 
-    rm PAIRS/poses_by_time.csv
+    rm PAIRS/poses_by_time.*
     tools/evaluation/poses_by_time.py PAIRS DATA --only 'recommended chain' --only ORB --only AKAZE --only SIFT --only 'SIFT normalized'
     tools/pages/summaries.py PAIRS doc/results COMMIT MACHINE
     tools/pages/pages.py

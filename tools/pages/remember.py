@@ -3,7 +3,7 @@
 import os
 import sys
 
-from summaries import remember
+from summaries import remember, today
 from timings import RESULTS
 
 
@@ -11,7 +11,7 @@ def main():
     if len(sys.argv) != 4:
         sys.exit(__doc__)
     file, commit, machine = sys.argv[1:]
-    remember(RESULTS / 'runs.csv', [os.path.relpath(file, RESULTS)], commit, machine)
+    remember(RESULTS / 'runs.csv', {os.path.relpath(file, RESULTS): [commit, today(), machine]})
 
 
 if __name__ == '__main__':

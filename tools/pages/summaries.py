@@ -3,11 +3,14 @@
 
 PAIRS: the folder of iib_evaluation's results, with a row for each pair of images. OUT gets means over the pairs of a group, one
 row each, with their number and the ends of the 95 % confidence interval of what is named last (low, high; bootstrap over scenes).
-With COMMIT and MACHINE, runs.csv tells of each file that was written of which run it is.
+With COMMIT and MACHINE, runs.csv tells of each file that was written of which run it is: of this one where PAIRS has other rows for it
+than when summaries were last made.
 """
 import collections
 import csv
 import datetime
+import hashlib
+import json
 import pathlib
 import random
 import re
@@ -304,11 +307,32 @@ OTHERS = {'differences.csv': ('estimators.csv', summarize_differences), 'gains.c
           'uncertainty.csv': ('uncertainty.csv', summarize_uncertainty)}
 
 
-def remember(file, names, commit, machine):
-    """Of which run files are, beside what the list tells of others."""
-    runs = {row['file']: row for row in read(file)}
-    runs.update((name, {'file': name, 'commit': commit, 'date': str(datetime.date.today()), 'machine': machine}) for name in names)
-    write(file, ['file', 'commit', 'date', 'machine'], (runs[name].values() for name in sorted(runs)))
+def today():
+    return str(datetime.date.today())
+
+
+def remember(file, found):
+    """Of which runs files are, as names and (commit, date, machine), beside what the list tells of others."""
+    runs = {row['file']: list(row.values())[1:] for row in read(file)}
+    runs.update(found)
+    write(file, ['file', 'commit', 'date', 'machine'], ([name, *runs[name]] for name in sorted(runs)))
+
+
+def record(source):
+    """Where it stands of which run a file of PAIRS is; it goes with the file, and then its commits are forgotten."""
+    return source.with_suffix('.run')
+
+
+def run_of(source, commit, machine):
+    """Commit, date and machine of a file of PAIRS: as last time unless its rows changed, and after the commits whose rows it had already."""
+    files = [source, source.with_name('localization_uncertainty.csv')][:1 + (source.name == 'uncertainty.csv')]
+    digest = hashlib.sha256(b''.join(file.read_bytes() for file in files if file.is_file())).hexdigest()
+    before, *run = json.loads(record(source).read_text()) if record(source).is_file() else [None]
+    if digest != before:
+        commits = dict.fromkeys(';'.join([*run[:1], commit]).split(';'))
+        run = [';'.join(commits), today(), machine]
+        record(source).write_text(json.dumps([digest, *run]))
+    return run
 
 
 def main():
@@ -324,7 +348,8 @@ def main():
         source, make = OTHERS[name]
         make(pairs / source, out / name)
     if sys.argv[3:]:
-        remember(out / 'runs.csv', [name for name in summarized + others if name != 'learned.csv'], *sys.argv[3:])  # entered by hand
+        sources = {**dict(zip(summarized, summarized)), **{name: OTHERS[name][0] for name in others if name != 'learned.csv'}}  # entered by hand
+        remember(out / 'runs.csv', {name: run_of(pairs / source, *sys.argv[3:]) for name, source in sources.items()})
     return 0
 
 

@@ -158,17 +158,26 @@ class Figures(unittest.TestCase):
                                                                               '0.1 precision above every other descriptor')],
                          ['**no**', 'yes', 'level', '**no**'])
 
-    def test_each_file_is_known_by_its_run(self):
+    def test_each_file_is_known_by_the_run_that_made_its_rows(self):
+        heads = 'reference,target,detector,descriptor,x,y,target_x,target_y,correct\n'
         with tempfile.TemporaryDirectory() as folder:
             pairs, out = pathlib.Path(folder, 'pairs'), pathlib.Path(folder, 'out')
             pairs.mkdir(), out.mkdir()
-            (pairs / 'comparison.csv').write_text('reference,target,detector,descriptor,x,y,target_x,target_y,correct\n')
             (out / 'runs.csv').write_text('file,commit,date,machine\ncomparison.csv,old,1999-01-01,m\nmatching.csv,old,1999-01-01,m\n')
-            with unittest.mock.patch.object(sys, 'argv', ['summaries.py', str(pairs), str(out), 'new', 'a machine']):
-                self.assertEqual(summaries.main(), 0)
-            runs = summaries.by(summaries.read(out / 'runs.csv'), 'file')
-        self.assertEqual([(row['commit'], row['machine']) for row in runs.values()], [('new', 'a machine'), ('old', 'm')])
-        self.assertNotEqual(runs['comparison.csv']['date'], '1999-01-01')
+
+            def runs(text, commit, today):
+                (pairs / 'comparison.csv').write_text(text)
+                with unittest.mock.patch.object(sys, 'argv', ['summaries.py', str(pairs), str(out), commit, 'on ' + commit]), \
+                        unittest.mock.patch.object(summaries, 'today', lambda: today):
+                    self.assertEqual(summaries.main(), 0)
+                return [','.join(row.values()) for row in summaries.read(out / 'runs.csv')]
+            other = 'matching.csv,old,1999-01-01,m'
+            self.assertEqual(runs(heads, 'a', '2001-01-01'), ['comparison.csv,a,2001-01-01,on a', other])
+            self.assertEqual(runs(heads, 'b', '2002-02-02'), ['comparison.csv,a,2001-01-01,on a', other])  # nothing was measured
+            more = heads + 'r,t,ORB,ORB,1,1,1,1,1\n'
+            self.assertEqual(runs(more, 'b;c', '2003-03-03'), ['comparison.csv,a;b;c,2003-03-03,on b;c', other])  # a's rows stay
+            summaries.record(pairs / 'comparison.csv').unlink()
+            self.assertEqual(runs(more, 'd', '2004-04-04'), ['comparison.csv,d,2004-04-04,on d', other])
 
     def test_no_error_is_told_where_nothing_was_found(self):
         with tempfile.TemporaryDirectory() as folder:
