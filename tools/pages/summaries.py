@@ -133,7 +133,7 @@ PLANS = {
                           {'milliseconds': column('milliseconds'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
 }
 
-KEPT = {'poses_by_time.csv'}  # whose ways to a pose may be measured in runs of their own: the others' means stay
+KEPT = {'poses_by_time.csv'}  # whose ways to a pose may be measured in runs of their own: the others' means and commits stay
 
 
 def read(file):
@@ -169,7 +169,8 @@ def write(file, heads, rows):
         csv.writer(opened, lineterminator='\n').writerows([heads, *rows])
 
 
-def summarize(source, target, groups_of, keys, values):
+def summarize(source, target, groups_of, keys, values, *commit):
+    """Means of each group; with the commit of which they are, that too."""
     groups = collections.defaultdict(lambda: collections.defaultdict(list))
     for row in read(source):
         for place in groups_of(row):
@@ -179,8 +180,8 @@ def summarize(source, target, groups_of, keys, values):
     for key, scenes in groups.items():
         every = [pair for scene in scenes.values() for pair in scene]
         ends = interval([[pair[-1] for pair in scene] for scene in scenes.values()])
-        lines[key] = [*key, len(every), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends)]
-    write(target, ['place', *keys, 'pairs', *values, 'low', 'high'], (lines[key] for key in sorted(lines)))
+        lines[key] = [*key, len(every), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends), *commit]
+    write(target, ['place', *keys, 'pairs', *values, 'low', 'high', *['commit'] * len(commit)], (lines[key] for key in sorted(lines)))
 
 
 def gain(pairs):
@@ -340,16 +341,19 @@ def main():
         print(__doc__.split('\n\n')[0] + '; PAIRS must be one', file=sys.stderr)
         return 2
     pairs, out = map(pathlib.Path, sys.argv[1:3])
+
+    def run(source):
+        return run_of(pairs / source, *sys.argv[3:]) if sys.argv[3:] else ['not recorded']
     summarized = [name for name in PLANS if (pairs / name).is_file()]
     for name in summarized:
-        summarize(pairs / name, out / name, *PLANS[name])
+        summarize(pairs / name, out / name, *PLANS[name], *([run(name)[0]] if name in KEPT else []))
     others = [name for name, (source, _) in OTHERS.items() if (pairs / source).is_file()]
     for name in others:
         source, make = OTHERS[name]
         make(pairs / source, out / name)
     if sys.argv[3:]:
         sources = {**dict(zip(summarized, summarized)), **{name: OTHERS[name][0] for name in others if name != 'learned.csv'}}  # entered by hand
-        remember(out / 'runs.csv', {name: run_of(pairs / source, *sys.argv[3:]) for name, source in sources.items()})
+        remember(out / 'runs.csv', {name: run(source) for name, source in sources.items()})
     return 0
 
 

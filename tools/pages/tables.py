@@ -81,21 +81,28 @@ def learned_and_chain():
     best = found['ALIKED-n16', 2048, 'LightGlue']
     return {'learned': '%.2f' % float(learned['at_5']), 'few': '%.2f' % float(chain[0]['at_5']), 'many': '%.2f' % float(chain[1]['at_5']),
             'most': '%.2f' % float(best['refined']['at_5']), 'most_plain': '%.2f' % float(best['plain']['at_5']),
-            'times': '%.0f' % (float(learned['milliseconds']) / float(chain[1]['milliseconds'])), 'pairs': learned['pairs']}
+            'times': '%.0f' % (float(learned['milliseconds']) / float(chain[1]['milliseconds'])), 'pairs': learned['pairs'],
+            'runs': other_run(learned, chain[1])}
+
+
+def other_run(*rows):
+    """What is to be said of times that are compared, where they are of different runs."""
+    return ', timed in different runs' if len({row['commit'] for row in rows}) > 1 else ''
 
 
 def learned_limit():
     """README's sentence on learned features."""
     return ('- With a GPU take [learned features](doc/guide.md#learned-features): ALIKED with LightGlue is the best of all with 2048 points, {most_plain} as it is and\n'
             '  {most} refined here; with 1000 it has {learned}, the chain {few} (in another run than above). On one thread of a busy CPU, 4000 points of the\n'
-            "  chain have {many} and took [1/{times} of the time](doc/results/README.md#learned-features-and-time) of ALIKED's 1000 in PyTorch; no GPU was timed.").format(**learned_and_chain())
+            "  chain have {many} and took [1/{times} of the time](doc/results/README.md#learned-features-and-time) of ALIKED's 1000 in PyTorch{runs};\n"
+            '  no GPU was timed.').format(**learned_and_chain())
 
 
 def learned_guide():
     """The guide's sentence on the same."""
     return ('With as many points ALIKED with LightGlue finds better poses than the chain: 1000, refined, have a score of {learned}, of the chain {few}. The best of all\n'
             'are 2048 of ALIKED, {most_plain} as they are and {most} refined. 4000 of the chain have {many}, in 1/{times} of the processor time that 1000 of ALIKED take in\n'
-            'PyTorch on one thread ([figures](results/README.md#learned-features-and-time), of a run of its own, with OpenCV 4.11).').format(**learned_and_chain())
+            'PyTorch on one thread{runs}; no score is of the run above ([figures](results/README.md#learned-features-and-time), with OpenCV 4.11).').format(**learned_and_chain())
 
 
 def classic_detectors():
@@ -114,9 +121,10 @@ def learned_claim():
     few, many = (found['ALIKED-n16', points, 'LightGlue'] for points in (1000, 2048))
     return ('*By number of points* ALIKED with LightGlue finds better poses than the chain: of 1000 points %s as they are and %s refined, of 2048 %s and %s,\n'
             'the chain, refined, of 1000, 2000 and 4000 points %s, %s and %s. *By time* 4000 points of the chain take %.0f ms of one core to their pose,\n'
-            '1000 of ALIKED %.0f: %.0f times as long, in PyTorch and on a machine that was busy with other work.' % (
+            '1000 of ALIKED %.0f: %.0f times as long, in PyTorch and on a machine that was busy with other work%s.' % (
                 *('%.2f' % float(ways[way]['at_5']) for ways in (few, many) for way in ('plain', 'refined')), *('%.2f' % float(row['at_5']) for row in chain.values()),
-                float(chain[4000]['milliseconds']), float(few['refined']['milliseconds']), float(few['refined']['milliseconds']) / float(chain[4000]['milliseconds'])))
+                float(chain[4000]['milliseconds']), float(few['refined']['milliseconds']), float(few['refined']['milliseconds']) / float(chain[4000]['milliseconds']),
+                other_run(few['refined'], chain[4000])))
 
 
 def paper(question):

@@ -69,10 +69,13 @@ class Figures(unittest.TestCase):
         heads = 'set,sequence,target,detector,points,matches,estimator,error,milliseconds\n'
         with tempfile.TemporaryDirectory() as folder:
             source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'poses_by_time.csv')
-            for line in ('facade_33,night,0-1,ORB,1000,m,e,0,7', 'facade_33,night,0-1,AKAZE,1000,m,e,5,9', 'facade_33,night,0-1,ORB,1000,m,e,5,8'):
+            for commit, line in (('a', 'facade_33,night,0-1,ORB,1000,m,e,0,7'), ('b', 'facade_33,night,0-1,AKAZE,1000,m,e,5,9'), ('c', 'facade_33,night,0-1,ORB,1000,m,e,5,8')):
                 source.write_text(heads + line)
-                summaries.summarize(source, target, *summaries.PLANS['poses_by_time.csv'])
-            self.assertEqual([(row['detector'], row['milliseconds'], row['at_5']) for row in summaries.read(target)], [('AKAZE', '9', '0'), ('ORB', '8', '0')])
+                summaries.summarize(source, target, *summaries.PLANS['poses_by_time.csv'], commit)
+            found = summaries.read(target)
+            self.assertEqual([(row['detector'], row['milliseconds'], row['at_5'], row['commit']) for row in found], [('AKAZE', '9', '0', 'b'), ('ORB', '8', '0', 'c')])
+            self.assertIn('different runs', tables.other_run(*found))
+            self.assertEqual(tables.other_run(found[0], found[0]), '')
 
     def test_intervals(self):
         self.assertEqual(summaries.interval([[.5]] * 9), [.5, .5])
