@@ -151,7 +151,7 @@ class Figures(unittest.TestCase):
         self.assertEqual([localization.share(20, 20), localization.share(0, 10)], ['100 % (84 to 100)', '0 % (0 to 28)'])
 
     def test_less_than_a_hundredth_is_no_order(self):
-        recalls = {'IIB': .505, 'IIB quartile': .49, 'IIB overlap': .515, 'ORB': .5}
+        recalls = {'IIB': .505, 'IIB quartile': .49, 'IIB overlap': .515, 'ORB': .5, 'IIB g5': .515, 'IIB g3': .5, 'IIB g2': .4}
         names = {'ORB'}.union(*(group for groups in tables.ORDERS.values() for group in groups))
         rows = [{'place': place, 'configuration': name, 'recall': recalls.get(name, .5), 'precision': .5 if name == 'ORB' else .595, 'pairs': '4'}
                 for place in tables.GROUPS for name in names]
@@ -160,6 +160,7 @@ class Figures(unittest.TestCase):
         self.assertEqual([found['| ' + order].partition(':')[0] for order in ('QUARTILE above MEAN', 'overlap above none', 'SORT below MEAN',
                                                                               '0.1 precision above every other descriptor')],
                          ['**no**', 'yes', 'level', '**no**'])
+        self.assertEqual(found['| g5 above g4 above g3 above g2'], 'in part: g5 0.515, IIB 0.505 level with g3 0.500, g2 0.400')
 
     def test_each_file_is_known_by_the_run_that_made_its_rows(self):
         heads = 'reference,target,detector,descriptor,x,y,target_x,target_y,correct\n'
