@@ -35,7 +35,8 @@ def results_page(folder):
     if not context:
         sys.exit('%s: no results of iib_evaluation' % folder)
     ours = folder == tables.RESULTS
-    page = {folder / 'index.html': rendered('results.html.j2', {**context, 'cost': ours and {**tables.learned_and_chain(), **tables.same_light(), 'classic': tables.classic_detectors().replace('`', '')}})}
+    cost = ours and {**tables.learned_and_chain(), **tables.same_light(), 'classic': tables.classic_detectors().replace('`', '')}
+    page = {folder / 'index.html': rendered('results.html.j2', {**context, 'cost': cost})}
     if ours:
         page[folder / 'cost.svg'] = charts.cost()
     return {**page, folder / 'poses.svg': charts.scores(context['estimates']['bars'])} if context['estimates']['bars'] else page

@@ -107,9 +107,6 @@ def learned_guide():
 
 def classic_detectors():
     """How OpenCV's detectors are used where time is measured."""
-    if ('SIFT normalized', 1000, 'mutual, a ratio') not in poses_by_time():
-        return ("ORB, AKAZE and SIFT are oriented here, as a call of OpenCV's `detectAndCompute` has them, and not at their best: the table of poses has them upright\n"
-                'and without the copies that SIFT makes of points, with better scores.')
     return ('ORB, AKAZE and SIFT are upright, as in the table of poses, and without the copies that SIFT makes of points. ORB and SIFT take two calls for that,\n'
             'and so more time than where they are oriented.')
 
@@ -290,15 +287,13 @@ def drop_in():
     on pairs of sets that nothing was trained on."""
     found, lines = summaries.by(rows('detected_points.csv'), 'place', 'detector', 'descriptor'), []
 
-    def correct(place, detector, descriptor):
-        row = found.get((place, detector, descriptor))
-        return float(row['correct']) if row else None
+    def correct(detector, descriptor):
+        return '%.0f' % float(found['natural', detector, descriptor]['correct'])
     gains = {(row['place'], row['detector']): '%.2f (%.2f to %.2f)' % tuple(float(row[column]) for column in ('gain', 'low', 'high')) for row in rows('gains.csv')}
     for name in ('ORB', 'BRISK', 'AKAZE', 'KAZE', 'SIFT'):
         rivals = max(((float(row['correct']), descriptor) for (place, detector, descriptor), row in found.items()
                       if (place, detector) == ('natural', name) and re.match('[BT]EBLID', descriptor)), default=None)
-        lines.append([name, '%.0f' % correct('natural', name, name), '%s: %.0f' % rivals[::-1] if rivals else '–', '%.0f' % correct('natural', name, 'IIB'), gains['natural', name],
-                      gains.get(('light', name), '%.2f' % (correct('light', name, 'IIB') / correct('light', name, name)))])
+        lines.append([name, correct(name, name), '%s: %.0f' % rivals[::-1] if rivals else '–', correct(name, 'IIB'), gains['natural', name], gains['light', name]])
     return table(['points of (%s pairs)' % found['natural', 'ORB', 'IIB']['pairs'], 'its own descriptor', 'best of BEBLID and TEBLID', '**IIB**', 'times its own (95 % interval)',
                   'times its own, on the %s pairs that are of no webcam' % found['light', 'ORB', 'IIB']['pairs']], lines)
 
@@ -435,7 +430,7 @@ def by_two(one, two):
 
 
 def scale_run():
-    """When and where that was, and which rows two threads brought little in, by either program."""
+    """When and where that was, and at which sizes of codes a second thread brought IIB little."""
     data = scale()
     found = {(r['bytes'], r['k'], r['threads']): r for r in data['flat']['rows']}
     slow = sorted({key[0] for key, row in found.items() if key[2] == 1 and row['iib_ns'] < 1.5 * found[key[0], key[1], 2]['iib_ns']})
