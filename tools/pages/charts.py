@@ -16,7 +16,10 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib import ft2font, ticker  # noqa: E402
 
 GREY, RED, BLUE = '#64748b', '#b91c1c', '#1d4ed8'
-COLOURS = {'recommended chain': RED, 'ALIKED-n16': BLUE, 'ORB': GREY, 'AKAZE': '#a16207', 'SIFT': '#047857', 'SIFT normalized': '#7e22ce'}
+# Of each detector that `cost` draws: its colour, and where its name stands, in points from the line's end, so that it lies on no other line.
+BESIDE = (8, 0), 'left'
+DRAWN = {'recommended chain': (RED, (-20, 30), 'center'), 'ALIKED-n16': (BLUE, *BESIDE), 'ORB': (GREY, (-8, 10), 'right'),
+         'AKAZE': ('#a16207', (0, -36), 'center'), 'SIFT': ('#047857', (14, -20), 'left'), 'SIFT normalized': ('#7e22ce', (-8, 6), 'right')}
 FAR = 1000  # centimetres
 WIDTH = 9  # inches, of every chart
 SCORE = 'score of poses in other light, limits up to 5 degrees'
@@ -91,29 +94,23 @@ def scores(bars):
 
 
 def cost():
-    """Poses in other light over the processor time that they take, of the same pairs: each detector's line goes from few points to many."""
+    """Poses in other light over the processor time that they take, of the same pairs: each detector's line goes from few points to many. One
+    that DRAWN does not have gets a colour, and its name beside the line's end."""
     figure, axis = plt.subplots(figsize=(5.4, 4.2), layout='constrained')  # small, so that a phone shows all of it
     lines = {}
     for (detector, points, _), ways in tables.poses_by_time().items():
         lines.setdefault(detector, []).append((points, ways))
-    for detector, each in lines.items():
-        colour = COLOURS[detector]
+    for n, (detector, each) in enumerate(lines.items()):
+        colour, where, side = DRAWN.get(detector, ('C%d' % n, *BESIDE))
+        each.sort(key=lambda one: one[0])
         for way, fill in (('plain', 'none'), ('refined', 'full')):
-            rows = [ways[way] for _, ways in sorted(each, key=lambda one: one[0])]
+            rows = [ways[way] for _, ways in each]
             score, ends = spread(rows)
             axis.errorbar([float(row['milliseconds']) for row in rows], score, ends, marker='o', fillstyle=fill, color=colour,
                           linestyle='-' if way == 'refined' else ':', **ENDS)
-        many = max(points for points, _ in each)
-        for points, ways in each:
-            name = '%s, %d' % (detector.replace('-n16', ' + LightGlue'), points)
-            # Beside the point where lines of others are above it.
-            where, side = {'SIFT normalized': ((-6, 4), 'right'), 'ORB': ((-6, 6), 'right'), 'SIFT': ((10, -4), 'left')}.get(
-                detector, ((0, 24), 'center'))
-            if points < many:
-                left = detector == 'SIFT normalized'
-                name, where, side = str(points), (-3 if left else 3, -13), 'right' if left else 'left'
-            axis.annotate(name, (float(ways['refined']['milliseconds']), float(ways['refined']['at_5'])), where, textcoords='offset points',
-                          ha=side, color=colour)
+        end = each[-1][1]['refined']
+        axis.annotate('%s\n%s' % (detector.replace('-n16', ' +\nLightGlue'), ', '.join(str(points) for points, _ in each)),
+                      (float(end['milliseconds']), float(end['at_5'])), where, textcoords='offset points', ha=side, va='center', color=colour)
     axis.set(xscale='log', ylim=(0, 1), xlim=(5, 20000), xlabel='ms of one core, from two images to the pose', ylabel='score of poses')
     axis.xaxis.set_major_formatter('{x:g}')
     axis.minorticks_off()

@@ -77,6 +77,11 @@ class Figures(unittest.TestCase):
             self.assertIn('different runs', tables.other_run(*found))
             self.assertEqual(tables.other_run(found[0], found[0]), '')
 
+    def test_a_detector_that_nobody_placed_is_drawn(self):
+        row = {'milliseconds': '9', 'at_5': '.5', 'low': '.4', 'high': '.6'}
+        with unittest.mock.patch.object(tables, 'poses_by_time', lambda: {('new one', points, 'm'): {'plain': row, 'refined': row} for points in (9, 8)}):
+            self.assertIn('<!-- 8, 9 -->', charts.cost())  # as matplotlib tells the text of a line
+
     def test_intervals(self):
         self.assertEqual(summaries.interval([[.5]] * 9), [.5, .5])
         low, high = summaries.interval([[0], [1]] * 50)
