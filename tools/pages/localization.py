@@ -38,5 +38,5 @@ def context(results, setups):
     """What the template takes; `setups` is the file of tools/localization/setups.py."""
     rows = sorted((row for row in results['rows'] if row['place'] == 'street'), key=lambda row: row['method'].startswith('SIFT'))
     return {**results, 'by_light': [[row for row in rows if row['light'] == light] for light in results['lights']], 'worst': worst(results),
-            'setups': tables.localization_lights(setups),
+            'setups': [tables.localization_lights(setups), tables.quoted_systems()],
             'photographs': sorted({row['place'] for row in results['rows']} - {'street', 'every 2', 'every 4'})}

@@ -151,7 +151,13 @@ def matching_modes():
 
 def localization_systems():
     """The paper's table of localization systems, as it quotes them."""
-    return table(['system', 'inputs', 'lateral', 'longitudinal', 'altitude'], [[value or '–' for value in row.values()] for row in LOCALIZATION])
+    head, *lines = quoted_systems()
+    return table(head, lines)
+
+
+def quoted_systems():
+    """The head and the lines of that table."""
+    return [['system', 'inputs', 'lateral', 'longitudinal', 'altitude'], *([value or '–' for value in row.values()] for row in LOCALIZATION)]
 
 
 SETUPS = {'': 'recommended chain', '--lines': 'recommended chain, lines', '--orb-and-akaze': 'ORB and AKAZE',
@@ -193,9 +199,9 @@ def localization_photographs():
 
 
 def localization_lights(file):
-    """The same by light, for the page of localization, above the paper's table: the head and the lines."""
-    return [['map', 'set-up', 'light'] + SETUP_HEAD, *setups(('map', 'setup', 'light'), file), *(
-        ['as the paper quotes it', row['system'], row['inputs'], '', '', '', row['lateral'], row['longitudinal'], row['altitude'], ''] for row in LOCALIZATION)]
+    """The same by light, for the page of localization, in fewer columns: the head and the lines."""
+    return [['map', 'set-up', 'light', 'poses', '5 cm, 0.5°', *SETUP_HEAD[3:]], *(
+        [*line[:3], '%s of %s' % (line[4], line[3]), *line[5:]] for line in setups(('map', 'setup', 'light'), file))]
 
 
 ONE, TWO, THREE = ('IIB x', 'IIB y', 'IIB i', 'IIB o'), ('IIB x+y', 'IIB o+i'), ('IIB x+y+i', 'IIB x+y+o')
