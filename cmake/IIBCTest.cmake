@@ -51,6 +51,7 @@ add_test(NAME perf-smoke COMMAND opencv_perf_iib --perf_min_samples=1 --perf_for
 add_test(NAME perf-smoke-geometry COMMAND opencv_perf_iib_geometry --perf_min_samples=1 --perf_force_samples=1)
 if(UNIX)
   add_test(NAME scripts COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/scripts_test.sh")
+  add_test(NAME nightly COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/nightly_test.sh")
 endif()
 set(compilers "${CMAKE_CXX_COMPILER}")
 foreach(name g++ clang++)

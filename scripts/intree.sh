@@ -118,9 +118,11 @@ export PYTHONPATH="$build/python_loader"
 "$python3" "$root/modules/iib/misc/python/test/test_iib.py" -v
 "$python3" "$root/python/tests/cv2_more.py" -v
 say "the names that python/tests/test_names.py looks for"
-"$python3" "$root/python/tests/cv2_names.py" | diff "$root/python/tests/cv2_names.txt" -
+"$python3" "$root/python/tests/cv2_names.py" >"$build/cv2_names.txt"
+diff "$root/python/tests/cv2_names.txt" "$build/cv2_names.txt"
 say "the tutorial's Python program, on the demo's pair"
 sed -n '/^```python$/,/^```$/{/^```/!{/^import opencv_iib$/d;s/^# opencv_iib = /opencv_iib = /;p}}' "$root/modules/iib/tutorials/iib_day_night.markdown" >"$build/day_night.py"
 pair="$root/tools/synthetic"
-"$python3" "$build/day_night.py" "$pair/day.png" "$pair/night.png" | grep -x '[1-9][0-9]* of [0-9]* matches agree with'
+"$python3" "$build/day_night.py" "$pair/day.png" "$pair/night.png" >"$build/day_night.txt"
+grep -x '[1-9][0-9]* of [0-9]* matches agree with' "$build/day_night.txt"
 say "done: $build"

@@ -28,7 +28,9 @@ need $compiler_packages binutils python3-venv python3-dev
 
 wheels="$build/wheel"
 mkdir -p "$wheels"
-rm -f "$wheels"/*.tar.gz "$wheels"/*_"$("$1" -c 'import platform; print(platform.machine())')".whl  # others' stay
+# Wheels of this version for other processors stay.
+find "$wheels" -type f ! -name "opencv_iib-$(project_version)-*.whl" -delete
+rm -f "$wheels"/*_"$("$1" -c 'import platform; print(platform.machine())')".whl
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 

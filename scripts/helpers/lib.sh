@@ -162,6 +162,15 @@ build_library() {
     build_targets "$@"
 }
 
+# reach_network ROOT: a system in a folder has this one's names of hosts, and of pip's index and certificates where it has its own.
+reach_network() {
+    for file in /etc/resolv.conf /etc/hosts /etc/pip.conf /etc/ssl/certs/ca-certificates.crt; do
+        [ ! -f $file ] || cp $file "$1$file"
+    done
+}
+
+project_version() { sed -n 's/^project(opencv_iib VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt"; }
+
 # The commit that is measured; "dirty" where files differ from it, but for those into which figures are written.
 measured_commit() {
     commit=$(git -C "$root" rev-parse --short HEAD 2>/dev/null) || commit=unknown

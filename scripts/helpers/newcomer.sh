@@ -28,12 +28,7 @@ if [ ! -f "$bare" ]; then
 fi
 mkdir "$work/root"
 tar -C "$work/root" -xf "$bare"
-cp /etc/resolv.conf "$work/root/etc/resolv.conf"
-[ ! -f /etc/hosts ] || cp /etc/hosts "$work/root/etc/hosts"
-# Where this machine's pip is told of an index or certificates of its own, that one is, too.
-[ ! -f /etc/pip.conf ] || cp /etc/pip.conf "$work/root/etc/pip.conf"
-certificates=/etc/ssl/certs/ca-certificates.crt
-[ ! -f $certificates ] || cp $certificates "$work/root$certificates"
+reach_network "$work/root"
 
 # The root lives for this run alone: dpkg need not wait for the disk after each file.
 echo force-unsafe-io >"$work/root/etc/dpkg/dpkg.cfg.d/newcomer"

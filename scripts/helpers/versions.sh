@@ -16,6 +16,7 @@ for suite in "$@"; do
         debootstrap --variant=minbase --include=ca-certificates "$suite" "$base.new" >"$cache/debian-$suite.log"
         mv "$base.new" "$base"
     fi
+    reach_network "$base"
     say "copying the working tree into $base"
     rm -rf "$base/root/opencv_iib"
     mkdir -p "$base/root/opencv_iib"

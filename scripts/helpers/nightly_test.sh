@@ -1,0 +1,74 @@
+#!/bin/sh
+# `.ci/nightly --document` and `table` in a small repository whose steps are stand-ins: what failed is told, what was skipped is
+# counted, the tree stays as it was committed, and only a whole night of one commit is one.
+. "$(dirname "$0")/lib.sh"
+
+[ $# = 0 ] || fail "takes no argument"
+command -v git >/dev/null || {
+    say "skipped: .ci/nightly --document (there is no git)"
+    exit 0
+}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$work/programs" "$work/tree/.ci" "$work/tree/scripts/helpers" "$work/tree/doc/results" "$work/tree/tools/pages"
+printf '#!/bin/sh\nprintf installed\n' >"$work/programs/dpkg-query"  # nothing is to be installed
+printf '#!/bin/sh\nexit 0\n' >"$work/programs/apt-get"
+cp "$root/.ci/nightly" "$work/tree/.ci"
+cd "$work/tree"
+cp "$root/scripts/helpers/lib.sh" scripts/helpers
+cat >scripts/helpers/macos.sh <<'EOF2'
+#!/bin/sh
+echo "== skipped: one thing"
+echo "Ran 7 tests in 1.0s"
+echo "OK (skipped=2)"
+EOF2
+printf '#!/bin/sh\nprintf "one after the other..."\nexit 1\n' >scripts/helpers/package.sh  # its last line has no end
+chmod +x "$work/programs"/* scripts/helpers/*
+echo "step,commit,date,minutes,counts,result" >doc/results/night.csv
+git init -q .
+git add .
+git -c user.name=test -c user.email=test commit -q -m "Stand-ins"
+commit=$(git rev-parse --short HEAD)
+export XDG_CACHE_HOME="$work/cache" PATH="$work/programs:$PATH" IIB_PYTHON=true
+rows="$work/cache/opencv_iib/night.csv"
+
+# expect WHAT COMMAND...
+expect() {
+    what=$1
+    shift
+    "$@" || {
+        echo "$what:" >&2
+        cat "$work/out" "$rows" >&2
+        exit 1
+    }
+}
+
+code=0
+.ci/nightly --document macos package >"$work/out" 2>&1 || code=$?
+expect "a night with a step that fails ends with 1, not $code" [ $code = 1 ]
+expect "tests are counted, and what was skipped" grep -qx "macos,$commit,[-0-9]*,[01],7 tests (3 skipped),passed" "$rows"
+expect "what failed is told" grep -qx "package,$commit,[-0-9]*,[01],,failed" "$rows"
+expect "the tree stays as it was" [ -z "$(git status --porcelain)" ]
+echo >new.sh
+! .ci/nightly --document macos >"$work/out" 2>&1 || expect "a new file is not committed" false
+expect "the new file is told" grep -q "git status" "$work/out"
+rm new.sh
+
+! .ci/nightly table >"$work/out" 2>&1 || expect "two steps are no night" false
+expect "a step that failed is told" grep -qx "package failed" "$work/out"
+expect "a step that was not run is told" grep -qx "tests was not run" "$work/out"
+expect "the table has what was run" grep -q "^macos,$commit,.*,passed$" doc/results/night.csv
+# night MINUTES: rows of a whole night.
+steps=$(sed -n 's/^known="\(.*\)"$/\1/p' .ci/nightly)
+night() {
+    for step in $steps; do
+        echo "$step,$commit,2026-01-01,$1,1 tests,passed"
+    done >"$rows"
+}
+night 18
+expect "a whole night is one" .ci/nightly table >"$work/out" 2>&1
+night 19
+! .ci/nightly table >"$work/out" 2>&1 || expect "more than six hours are no night" false
+night 1
+sed -i "s/^bits,$commit/bits,0000000/" "$rows"
+! .ci/nightly table >"$work/out" 2>&1 || expect "two commits are no night" false
