@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""Writes doc/api.md, the public names of the headers. A signature that changed or went is written only if the newest section of
-CHANGELOG.md has its name, so that no user meets a change that nobody told.
+"""Writes doc/api.md, the public names of the headers. What changed or went since the last release, of which header, class and
+line, has its own name and its class's as `code` in one item of CHANGELOG.md's newest section, under "Backward incompatible" if it
+was stable; changed bases of a class, and headers whose promise changed, have theirs. Before the first release's tag, and without git, that is since the last commit, or since the page was written.
+
+It does not see what is the same in letters (another meaning, a macro's or constant's value), nor whether the item tells the truth.
 """
 import argparse
 import pathlib
 import re
+import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -97,29 +101,78 @@ def page():
     return '\n'.join(lines) + '\n'
 
 
-def names(line):
-    """What one would call a declaration: the word before its arguments, its members or its end."""
-    return re.findall(r'\w+(?=\()|\w+(?=;| = | \{|$| :)', line)[:1]
+def promised(text):
+    """What a page promises: (header, class, line) and whether it is stable. A header's own line is its promise's first word."""
+    header, stable, owners, found = '', False, [], {}
+    for line in text.splitlines():
+        if line.startswith('## '):
+            header, owners = line[3:], ['']
+        elif re.match(r'(Stable|May change): ', line, re.IGNORECASE):
+            stable = line.startswith('Stable')
+            found[header, '', line.split(':')[0]] = stable
+        elif header and line.strip() and not line.startswith('```'):
+            owners = owners[:(len(line) - len(line.lstrip())) // 4 + 1]
+            found[header, owners[-1], line.strip()] = stable
+            if re.match(r' *(class|struct) ', line):
+                owners.append(name(line))
+    return found
+
+
+def name(line):
+    """What one would call a declaration: the word before its arguments, its bases, its values or its end."""
+    if line.startswith('typedef'):
+        return re.search(r'(\w+);', line)[1]
+    return re.search(r'(operator\S+?|~?\w+)(?=\()|\w+(?=;| = | \{|$| :)', line)[0]
 
 
 def untold(before, after):
-    """Signatures that are no longer there and of whose name the newest section of the changelog says nothing."""
+    """What a page promised, another does not, and the newest section of the changelog does not tell where it should."""
     newest = re.split(r'^## ', (ROOT / 'CHANGELOG.md').read_text(), flags=re.MULTILINE)[1]
-    gone = [line.strip() for line in before.splitlines() if line.strip() and line not in after.splitlines()]
-    return [line for line in gone if line.endswith((';', '}')) and not any(re.search(r'\b%s\b' % name, newest) for name in names(line))]
+    breaking = re.search(r'^### Backward incompatible\n(.*?)(^### |\Z)', newest, re.MULTILINE | re.DOTALL)
+
+    def told(text, *words):
+        code = [' '.join(re.findall('`([^`]+)`', item)) for item in re.split(r'^- ', text, flags=re.MULTILINE)]
+        return any(all(re.search(r'(?<!\w)%s(?!\w)' % re.escape(word), item) for word in words) for item in code)
+
+    def kept(header, owner, line):  # an enum may grow at its end
+        return any(there[:2] == (header, owner) and (there[2] == line or line.startswith('enum') and there[2].startswith(line[:-3] + ','))
+                   for there in now)
+
+    now, gone = promised(after), []
+    for (header, owner, line), stable in promised(before).items():
+        words = [name(line), owner or name(line)]
+        if line in ('Stable', 'May change'):
+            words = [header.split('/')[-1]]
+        elif re.match(r'(class|struct) ', line):  # changed bases have names of their own
+            others = [there[2] for there in now if there[:2] == (header, owner) and there[2].split()[:2] == line.split()[:2]]
+            words += [base for other in others for base in set(re.findall(r'\w+(?=,|$)', line)) ^ set(re.findall(r'\w+(?=,|$)', other))]
+        if not kept(header, owner, line) and not told((breaking[1] if breaking else '') if stable else newest, *words):
+            gone.append('%s: %s%s' % (header, owner and owner + ': ', line))
+    return gone
+
+
+def released():
+    """The page of the last release."""
+    def git(*arguments):
+        try:
+            return subprocess.run(['git', '-C', str(ROOT), *arguments], capture_output=True, text=True, check=True).stdout
+        except (OSError, subprocess.CalledProcessError):
+            return ''
+    tag = git('describe', '--tags', '--abbrev=0', '--match', 'v*').strip()
+    return tag and git('show', tag + ':./doc/api.md') or git('show', 'HEAD:./doc/api.md') or PAGE.read_text()
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--check', action='store_true', help='write nothing; an error where the page would change')
     check = parser.parse_args().check
-    before, after = PAGE.read_text() if PAGE.exists() else '', page()
+    before, after = PAGE.read_text(), page()
     if check and before != after:
         changed = sorted(set(before.splitlines()) ^ set(after.splitlines()))
         sys.exit('doc/api.md is not of these headers; scripts/helpers/cpp_api.py writes it anew:\n' + '\n'.join(changed))
-    missing = untold(before, after)
+    missing = untold(released(), after)
     if missing:
-        sys.exit('CHANGELOG.md does not tell that these changed:\n' + '\n'.join(missing))
+        sys.exit('CHANGELOG.md does not tell, by their names and where it should, that these changed:\n' + '\n'.join(missing))
     if not check:
         PAGE.write_text(after)
 

@@ -31,23 +31,91 @@ CV_EXPORTS void free(const std::vector<int>& of = std::vector<int>{}, const Late
 READ = [(0, 'class A : public B'), (1, 'enum Kind { ONE, TWO = 2 };'), (1, 'A(int first_ = 1);'),
         (1, 'virtual void run(InputArray a, OutputArray b = noArray()) const = 0;'), (1, 'struct Inner'), (2, 'int size = 0;'),
         (0, 'void free(const std::vector<int>& of = std::vector<int>{}, const Later* later = nullptr);')]
+PAGE = """# Public names
+
+## a.hpp
+Stable: a word
+
+```cpp
+class A : public Base
+    void run(int a);
+    A& operator=(const A&);
+    enum Mode { SLOW, FAST = 1 };
+class B
+    void run(int a);
+void free(int first, int last = -1);
+typedef std::function<Mat(Ptr)> Reader;
+```
+
+## b.hpp
+May change: news
+
+```cpp
+bool find(int a, double scale = .25);
+```
+"""
+CHANGELOG = """# Changelog
+
+## Unreleased
+
+### Backward incompatible
+- something
+%s
+
+### Added
+%s
+
+## 0.1.0
+- `A::run`, `free`, `A`, `find`, `a.hpp`, `b.hpp`
+"""
 
 
 class Test(unittest.TestCase):
     def test_reads_what_is_public(self):
         self.assertEqual(READ, list(cpp_api.declarations(HEADER)))
 
-    def test_names_what_no_changelog_tells(self):
-        before = 'class A\n    void run(int a);\n    int size = 0;\nvoid free();\n'
-        after = 'class A\n    void run(int a, int b);\n'
+    def untold(self, changelog, *changes, before=PAGE):
+        after = before
+        for old, new in changes:
+            self.assertIn(old, after)
+            after = after.replace(old, new)
         with tempfile.TemporaryDirectory() as folder:
             cpp_api.ROOT = pathlib.Path(folder)
-            changelog = cpp_api.ROOT / 'CHANGELOG.md'
-            changelog.write_text('# Changelog\n\n## Unreleased\n- `free` is gone, and runs\n\n## 0.1\n- `run`, `size`\n')
-            self.assertEqual(['void run(int a);', 'int size = 0;'], cpp_api.untold(before, after))
-            self.assertEqual([], cpp_api.untold(before, before + 'void more();\n'))
-            changelog.write_text('# Changelog\n\n## Unreleased\n- `run` takes b, no `size`; `free` is gone\n')
-            self.assertEqual([], cpp_api.untold(before, after))
+            (cpp_api.ROOT / 'CHANGELOG.md').write_text(changelog)
+            return [line.split(': ', 1)[-1] for line in cpp_api.untold(before, after)]
+
+    def test_what_was_stable_is_told_as_incompatible(self):
+        word = CHANGELOG % ('', '- `run`, `A::walk`, `Fast`, `a.hpp`, `free`, `new_name`')
+        for change, gone, told in (
+                (('A : public Base\n    void run(int a);', 'A : public Base'), 'A: void run(int a);', '`A::run`'),  # class B has the line, too
+                (('class A : public Base', 'class A : public Other'), 'class A : public Base', '`A` is an `Other`, no `Base`'),
+                (('## a.hpp\nStable', '## a.hpp\nMay change'), 'Stable', '`a.hpp`'),
+                (('int last = -1', 'int last = 0'), 'void free(int first, int last = -1);', '`free`'),
+                ((', int last = -1', ''), 'void free(int first, int last = -1);', '`free`'),
+                (('FAST = 1', 'FAST = 2'), 'A: enum Mode { SLOW, FAST = 1 };', 'of `A`: `Mode`'),
+                (('FAST = 1', 'FAST = 12'), 'A: enum Mode { SLOW, FAST = 1 };', 'of `A`: `Mode`'),
+                (('Ptr)> Reader', 'Ptr*)> Reader'), 'typedef std::function<Mat(Ptr)> Reader;', '`Reader`'),
+                (('    A& operator=(const A&);\n', ''), 'A: A& operator=(const A&);', '`A::operator=`')):
+            for silent in (CHANGELOG % ('', ''), word, CHANGELOG % ('- `free_all`, free, run of `B`, `B::Mode`, A', ''),
+                           CHANGELOG % ('', '') + '- ' + told, CHANGELOG % ('- `A` is a `Base`\n- `run`, `Mode`, `operator=`', '')):
+                self.assertEqual([gone], self.untold(silent, change), silent)
+            self.assertEqual([], self.untold(CHANGELOG % ('- ' + told, ''), change))
+
+    def test_what_may_change_is_told_anywhere(self):
+        change = 'double scale = .25', 'double scale = 0'
+        self.assertEqual(['bool find(int a, double scale = .25);'], self.untold(CHANGELOG % ('', '- scale of find'), change))
+        for told in (CHANGELOG % ('- `find`', ''), CHANGELOG % ('', '- `find`: `scale`')):
+            self.assertEqual([], self.untold(told, change))
+
+    def test_additions_need_no_word(self):
+        added = ('FAST = 1', 'FAST = 1, FASTEST'), ('class B', 'void more();\nclass B'), ('May change: news', 'Stable: news')
+        self.assertEqual(['May change'], self.untold(CHANGELOG % ('', ''), *added))  # but a promise
+        self.assertEqual([], self.untold(CHANGELOG % ('', '- `b.hpp` is stable'), *added))
+
+    def test_the_page_as_it_is_committed(self):
+        for (_, owner, line), _ in cpp_api.promised(cpp_api.PAGE.read_text()).items():
+            self.assertRegex(cpp_api.name(line), r'^(~?\w+|operator=|May change|Stable)$', line)
+            self.assertRegex(owner, r'^\w*$')
 
 
 if __name__ == '__main__':
