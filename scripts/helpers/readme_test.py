@@ -126,6 +126,19 @@ target_link_libraries(align opencv_iib_geometry opencv_imgcodecs opencv_imgproc)
         run(work / 'localizer by cmake/align', *PAIR, 'aligned.png', prints=r'\d\d+ matches agree; .*\n')
         run(work / 'localizer by cmake/localizer', 'nowhere', prints='nowhere is no map: it has no map.iib')
 
+    # The version is CMakeLists.txt's; other minor versions may break, so that a program that asks for one does not get this one.
+    major, minor, patch = map(int, re.search(r'project\(opencv_iib VERSION (\d+)\.(\d+)\.(\d+)', (ROOT / 'CMakeLists.txt').read_text()).groups())
+    run('pkg-config', '--modversion', 'opencv_iib', prints='%d[.]%d[.]%d\n' % (major, minor, patch))
+    asked = {'%d.%d' % (major, minor): 1, '%d.%d.%d' % (major, minor, patch): 1, '%d.%d.%d' % (major, minor, patch + 1): 0,
+             '%d.%d' % (major, minor + 1): 0, '%d.%d' % (major, max(minor - 1, 0)): int(not minor), '%d.0' % (major + 1): 0}
+    (work / 'versions').mkdir()
+    (work / 'versions/CMakeLists.txt').write_text('cmake_minimum_required(VERSION 3.16)\nproject(versions CXX)\n' + ''.join(
+        'find_package(opencv_iib %s QUIET)\nmessage(STATUS "asked for %s: ${opencv_iib_FOUND} ${opencv_iib_VERSION}")\n' % (one, one)
+        for one in asked))
+    answers = dict(re.findall(r'asked for (\S+): (\d)', configure(work / 'versions', 'by version')))
+    if answers != {one: str(found) for one, found in asked.items()}:
+        sys.exit('versions of the CMake package: expected %s, got %s' % (asked, answers))
+
     # An OpenCV of another minor version is refused, and the message says why.
     (work / 'other').mkdir()
     (work / 'other/OpenCVConfig.cmake').write_text('set(OpenCV_VERSION 4.99.0)\n')
