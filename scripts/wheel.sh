@@ -86,6 +86,9 @@ for python in "$@"; do
     rm "$wheel"
     [ "$version" -lt 12 ] || stable=yes
 done
+# README promises systems of 2022, whose C library is 2.35.
+newer=$(find "$wheels" -name '*.whl' ! -name '*manylinux_2_[12][0-9]_*' ! -name '*manylinux_2_3[0-5]_*')
+[ -z "$newer" ] || fail "needs a newer C library than 2.35: $newer"
 mv "$work"/*.tar.gz "$wheels"
 say "built:"
 ls "$wheels"

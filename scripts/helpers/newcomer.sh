@@ -1,10 +1,11 @@
 #!/bin/sh
 # Runs every command of README.md, in its order, on a bare Debian made by debootstrap, as someone would who has just
-# cloned the repository: what is in the `sh` blocks, with the files of the `cmake`, `cpp` and `python` blocks beside it.
-# Blocks of pip, which Debian's Python refuses outside of an environment, are left out. What README says of the packages of its first
-# command, on Debian 12, must be within 5 % of what apt prints of them. The paths hold spaces. Needs root; the bare system stays in the cache.
+# cloned the repository: what is in the `sh` blocks but for a wheel's, with the files of the `cmake`, `cpp` and `python` blocks beside it.
+# What README says of the packages of its first command, on Debian 12, must be within 5 % of what apt prints of them. The paths hold
+# spaces. Needs root; the bare system stays in the cache.
 #   scripts/helpers/newcomer.sh [SUITE] [WHEEL]    by default bookworm
-# With a wheel, that of scripts/wheel.sh, its Python program alone, in a system without a compiler: from pip to its answer in ten seconds.
+# With a wheel, that of scripts/wheel.sh, its commands for a wheel and its Python program alone, in a system without a compiler: from pip
+# to the program's answer in ten seconds.
 . "$(dirname "$0")/lib.sh"
 
 wheel=""
@@ -46,32 +47,40 @@ import sys
 
 readme, home = pathlib.Path(sys.argv[1]).read_text(), pathlib.Path(sys.argv[2])
 names = {'cmake': 'CMakeLists.txt', 'cpp': 'match_pair.cpp', 'python': 'match_pair.py'}
+blocks = re.findall(r'^```(sh|cmake|cpp|python)\n(.*?)^```$', readme, re.MULTILINE | re.DOTALL)
 script = ['set -ex']
-for language, text in re.findall(r'^```(sh|cmake|cpp|python)\n(.*?)^```$', readme, re.MULTILINE | re.DOTALL):
+for language, text in blocks:
     if language == 'sh':
-        if not text.startswith('pip '):
+        if '.whl' not in text:
             script += ['cd "$HOME/%s"' % ('my project' if 'match_pair' in text else 'the repository'), text]
     elif not (home / 'my project' / names[language]).exists() and (language != 'cpp' or 'int main' in text):
         (home / 'my project' / names[language]).write_text(text)
 (home / 'commands.sh').write_text('\n'.join(script))
-PYTHON
-[ -z "$wheel" ] || {
-    cp "$wheel" "$home/my project"
-    cat >"$home/commands.sh" <<'SH'
-set -ex
+
+
+def line(part):
+    """The only line of the `sh` blocks with this in it."""
+    found, = (line for language, text in blocks if language == 'sh' for line in text.splitlines() if part in line)
+    return found
+
+
+(home / 'wheel.sh').write_text(f"""set -ex
 apt-get update
 apt-get install --yes --no-install-recommends python3-venv
 if command -v cc; then exit 1; fi
-python=/usr/bin/python3
-"$python" -m venv "$HOME/an environment"
+{line('-m venv')}
 cd "$HOME/my project"
 start=$(date +%s%N)
-"$HOME/an environment/bin/pip" install opencv_iib-*.whl opencv-python-headless
-"$HOME/an environment/bin/python" match_pair.py day.png night.png
+{line('.whl')}
+{line('match_pair.py')}
 taken=$((($(date +%s%N) - start) / 1000000))
 echo "README's Python program ended $taken ms after pip began"
 [ $taken -lt 10000 ]
-SH
+""")
+PYTHON
+[ -z "$wheel" ] || {
+    cp "$wheel" "$home/my project"
+    mv "$home/wheel.sh" "$home/commands.sh"
 }
 say "running the README's commands in $work/root"
 # A mount namespace of its own, so that nothing stays mounted.

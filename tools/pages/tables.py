@@ -428,6 +428,10 @@ def night():
         ('`%s`' % row['step'], *(str(row[key]) for key in ('counts', 'minutes', 'commit', 'date', 'result'))) for row in rows('night.csv')])
 
 
+def artifacts():
+    return table(('file', 'MB', 'SHA-256'), [('`%s`' % row['file'], '%.2f' % (int(row['bytes']) / 1e6), '`%s`' % row['sha256']) for row in rows('artifacts.csv')])
+
+
 def by_two(one, two):
     """How many times as fast two threads are; more than twice is noise, but for what a median is unsure of."""
     if one > 2.1 * two:
@@ -497,6 +501,6 @@ QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, how_sure, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
     step_by_step, mapped_index, scale_run, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, classic_detectors, learned_claim, learned_limit, estimator_limit, learned_guide, pose_pairs,
-    detected_points, uncertainty, night)}
+    detected_points, uncertainty, night, artifacts)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
