@@ -5,13 +5,19 @@ Methods of nanobind's have no inspect.signature, and tell mistakes by C++ types.
 from __future__ import annotations
 
 import ast
+import typing
 from typing import Any
 
-from opencv_iib import _core, enums
+import numpy.typing
+
+import opencv_iib.enums
+from opencv_iib import _core
 from opencv_iib._arguments import integer, number
 
 # What is done with an argument, by its annotation; others are passed on as they are. Numbers that are returned become values of enums.
 CHECKS = {'int': 'integer({0}, {0!r})', 'float': 'number({0}, {0!r})', 'bool': 'bool({0})'}
+# What functions and annotations refer to.
+NAMES = {'integer': integer, 'number': number, 'typing': typing, 'numpy': numpy, 'opencv_iib': opencv_iib}
 
 
 def function_of(method: Any, signature: str, doc: str) -> Any:
@@ -20,9 +26,9 @@ def function_of(method: Any, signature: str, doc: str) -> Any:
     passed = [CHECKS.get(ast.unparse(each.annotation) if each.annotation else '', '{0}').format(each.arg) for each in function.args.args]
     call = f'method({", ".join(passed)})'
     if ast.unparse(function.returns).startswith('opencv_iib.enums.'):
-        call = f'{ast.unparse(function.returns)[len("opencv_iib."):]}({call})'
+        call = f'{ast.unparse(function.returns)}({call})'
     source = f'from __future__ import annotations\n{signature}:\n    return {call}'
-    names: dict[str, Any] = {'method': method, 'integer': integer, 'number': number, 'enums': enums}
+    names: dict[str, Any] = {**NAMES, 'method': method}
     exec(compile(source, method.__module__, 'exec'), names)
     made = names[function.name]
     made.__doc__, made.__module__, made.__qualname__ = doc, method.__module__, method.__qualname__

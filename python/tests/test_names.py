@@ -8,6 +8,7 @@ import pydoc
 import subprocess
 import sys
 import traceback
+import typing
 import unittest
 
 import opencv_iib
@@ -82,6 +83,7 @@ class Names(unittest.TestCase):
                     with self.subTest(owner=name, member=member):
                         self.assertTrue(method.__doc__)
                         self.assertTrue(inspect.signature(method))
+                        self.assertIn('return', typing.get_type_hints(method))
         shown = pydoc.plain(pydoc.render_doc(opencv_iib.HessianDetector))
         self.assertRegex(shown, r"HessianDetector\(maxFeatures: '?int'? = 1000, threshold: '?float'? = 0.0, scales: '?int'? = 5, sigma: '?float'? = 2.2, ")
         self.assertRegex(shown, r"setSigma\(self, sigma: '?float'?\) -> '?None'?\n \|  +Of the smallest scale in pixels, 1.5 to 8.\n")
