@@ -12,13 +12,31 @@ from support import REPOSITORY, InFolder, cv2, texture
 
 PAGES = [REPOSITORY / 'README.md', *sorted((REPOSITORY / 'doc').glob('*.md')), *sorted(REPOSITORY.glob('modules/*/*.md')),
          *sorted(REPOSITORY.glob('modules/*/tutorials/*.markdown'))]
-# In place of OpenCV 5's networks, whose files are not here.
-NETWORKS = '''from unittest import mock
+# In place of OpenCV 5's networks, whose files are not here: classes with the names and arguments of 5.0.0, as far as the guide uses them,
+# so that it can use no others.
+NETWORKS = '''
 images = [day, night]
 K1 = K2 = np.float64([[400, 0, 320], [0, 400, 240], [0, 0, 1]])
-cv2.ALIKED, cv2.LightGlueMatcher = mock.Mock(), mock.Mock()
-cv2.ALIKED.create.return_value = cv2.SIFT_create(1000)
-cv2.LightGlueMatcher.create.return_value.match = cv2.BFMatcher(cv2.NORM_L2, True).match'''
+class ALIKED:
+    @staticmethod
+    def create(modelPath):
+        return ALIKED()
+    def detectAndCompute(self, image, mask):
+        return cv2.SIFT_create(1000).detectAndCompute(image, mask)
+class LightGlueMatcher:
+    @staticmethod
+    def create(modelPath):
+        return LightGlueMatcher()
+    def setPairInfo(self, queryKpts, trainKpts, queryImageSize, trainImageSize):
+        self.counts = len(np.reshape(queryKpts, (-1, 2))), len(np.reshape(trainKpts, (-1, 2)))
+        assert queryImageSize == (640, 480) and trainImageSize == (640, 480)
+    def match(self, queryDescriptors, trainDescriptors):
+        assert self.counts == (len(queryDescriptors), len(trainDescriptors))
+        return cv2.BFMatcher(cv2.NORM_L2, True).match(queryDescriptors, trainDescriptors)
+for one in ALIKED, LightGlueMatcher:
+    assert {name for name in vars(one) if name[0] != '_'} <= set(dir(getattr(cv2, one.__name__, one)))
+    setattr(cv2, one.__name__, one)
+'''
 # Of each page, for each of its programs: arguments and what it prints; or of a piece of one: what stands before it, what after
 # it, and what that prints; or where else it is run.
 RUNS = {
