@@ -49,9 +49,9 @@ Ptr<IIB> takeExtractor(ByteSource& in, bool& mayBeRefused)
             level = std::min(level + (in.between(0, 3) == 0), iib->getGranularity());
             const bool boxes = iib->getMapping() == IIB::MAPPING_BOXES;
             const int side = boxes ? (in.rarely(4) ? 8 : 2) : (1 << level) - 2;
-            const Mat_<int> quad = (Mat_<int>(1, 5) << level, in.between(-wild, 5),
-                    in.between(-wild, side + wild), in.between(-wild, side), in.between(1 - wild, 15));
-            quad.copyTo(quads.row(i));
+            const int quad[] = {level, in.between(-wild, 5), in.between(-wild, side + wild),
+                    in.between(-wild, side), in.between(1 - wild, 15)};
+            std::copy(std::begin(quad), std::end(quad), quads[i]);
         }
         iib->setSelection(quads);
     }

@@ -78,7 +78,7 @@ TEST_F(ViewsTest, walks_are_paired_with_noon)
         camera << "camera_matrix" << cv::Mat(cv::Mat_<double>::eye(3, 3) * 7) << "depth_scale" << 0.001
                << "poses"
                << "[" << cv::Mat(cv::Mat_<double>::eye(3, 4))
-               << (cv::Mat_<double>(3, 4) << 0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 4) << "]";
+               << cv::Mat(cv::Matx34d(0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 4)) << "]";
     }
     const std::vector<ViewPair> pairs = findViewPairs({folder.path("")});
     ASSERT_EQ(2u, pairs.size());

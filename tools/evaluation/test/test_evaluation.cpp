@@ -46,8 +46,8 @@ protected:
         }
         folder.makeFolder("data/set/still/depth");
         folder.makeFolder("data/set/v_shift");
-        cv::Mat dark, noise(scene.size(), CV_8UC1), shifted,
-                shift = (cv::Mat_<double>(2, 3) << 1, 0, 9, 0, 1, -4);
+        cv::Mat dark, noise(scene.size(), CV_8UC1), shifted;
+        const cv::Matx23d shift(1, 0, 9, 0, 1, -4);
         rng.fill(noise, cv::RNG::UNIFORM, 0, 12);
         scene.convertTo(dark, CV_8U, 0.1, 10);
         dark += noise;
