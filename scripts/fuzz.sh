@@ -43,14 +43,6 @@ say "building the targets"
 # shellcheck disable=SC2046
 cmake --build "$build" --target $(printf 'iib_fuzz_%s ' "$@")
 
-# replay TARGET: its inputs with the kernels of each instruction set.
-replay() {
-    for off in "" AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL; do
-        OPENCV_CPU_DISABLE=$off "$build/fuzz/iib_fuzz_$1" -runs=0 $options "$corpus/$1" "$root/fuzz/corpus/$1" \
-            >>"$build/$1.log" 2>&1 || return 1
-    done
-}
-
 # What costs more than the library's own work: a record of where each block of memory was allocated, a long wait before
 # it is used again, libFuzzer's statistics of rare features and its search for leaks, and files on a disk. The suites
 # under the sanitizers have all of it.
@@ -59,27 +51,51 @@ export ASAN_OPTIONS="malloc_context_size=0:quarantine_size_mb=4:${ASAN_OPTIONS:-
 corpus="$root/build-fuzz/corpus" failures="$root/build-fuzz/failures"
 mkdir -p "$failures"
 
+# run TARGET OPTION...: on its inputs, as a child that goes when this process is ended.
+run() {
+    target=$1
+    shift
+    "$build/fuzz/iib_fuzz_$target" "$@" -entropic=0 -detect_leaks=0 -timeout=60 -rss_limit_mb=4096 -max_len=$longest \
+        -artifact_prefix="$failures/$target-" "$corpus/$target" "$root/fuzz/corpus/$target" >>"$build/$target.log" 2>&1 &
+    child=$!
+    trap 'kill $child; exit 1' TERM
+    wait $child
+}
+
+# replay TARGET: its inputs with the kernels of each instruction set.
+replay() {
+    for off in "" AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL; do
+        export OPENCV_CPU_DISABLE=$off
+        run "$1" -runs=0 || return 1
+    done
+}
+
 # fuzz TARGET: leaves a file beside its log if nothing was found.
 fuzz() {
-    options="-entropic=0 -detect_leaks=0 -timeout=60 -rss_limit_mb=4096 -max_len=$longest -artifact_prefix=$failures/$1-"
     mkdir -p "$corpus/$1"
-    if "$build/fuzz/iib_fuzz_$1" -max_total_time="$seconds" -print_final_stats=1 $options "$corpus/$1" \
-        "$root/fuzz/corpus/$1" >"$build/$1.log" 2>&1 && { [ -n "$plain" ] || replay "$1"; }; then
+    : >"$build/$1.log"
+    if run "$1" -max_total_time="$seconds" -print_final_stats=1 && { [ -n "$plain" ] || replay "$1"; }; then
         executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$1.log" | head -n 1)
         echo "$1: $executions executions, $(ls "$corpus/$1" | wc -l) inputs kept"
         touch "$build/$1.passed"
     else
-        tail -n 30 "$build/$1.log"
+        tail -n 30 "$build/$1.log" | sed "s/^/$1: /"  # others write meanwhile
     fi
 }
 
+children=""
+trap 'kill $children; exit 1' INT TERM
 say "$*: $seconds s each, $jobs at a time"
 running=0
 for target in "$@"; do
     rm -f "$build/$target.passed"
     fuzz "$target" &
+    children="$children $!"
     running=$((running + 1))
-    [ $((running % jobs)) != 0 ] || wait
+    if [ $((running % jobs)) = 0 ]; then
+        wait
+        children=""
+    fi
 done
 wait
 failed=""
