@@ -43,3 +43,11 @@ template <typename Statement> std::string messageOf(Statement statement)
     }
     return "";
 }
+
+//! That a statement throws since another process writes to the folder. On Windows the message goes on: which file to remove.
+template <typename Statement> void expectAnotherWrites(const std::string& folder, Statement statement)
+{
+    const std::string message = messageOf(statement);
+    EXPECT_EQ(0u, message.find(folder + " is being written by another process: wait until it has ended"))
+            << message;
+}

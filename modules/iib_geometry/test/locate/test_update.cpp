@@ -141,9 +141,7 @@ TEST_F(Update, what_failed_may_be_tried_again)
 TEST_F(Update, one_at_a_time)
 {
     MapUpdate first(name);
-    EXPECT_EQ(0u, messageOf([&] {
-        MapUpdate second(name);
-    }).find(name + " is being written by another process: wait until it has ended"));
+    expectAnotherWrites(name, [&] { MapUpdate second(name); });
     EXPECT_EQ("", messageOf([&] { MapUpdate second(name, folder.path("other")); })) << "only reads it";
     first.add("light", relit(truth, 9), CAMERA);
     EXPECT_EQ(
