@@ -3,6 +3,7 @@
 #include "pair_list.hpp"
 
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "dataset.hpp"
@@ -13,7 +14,11 @@ namespace {
 
 namespace fs = cv::utils::fs;
 
-bool isCamera(const cv::Matx33d& K) { return K(0, 0) > 0 && K(1, 1) > 0 && K.row(2) == cv::Matx13d(0, 0, 1); }
+//! Without skew, which is lost where an image is turned.
+bool isCamera(const cv::Matx33d& K)
+{
+    return K(0, 0) > 0 && K(1, 1) > 0 && K == cv::Matx33d(K(0, 0), 0, K(0, 2), 0, K(1, 1), K(1, 2), 0, 0, 1);
+}
 
 //! Up to what five digits leave.
 bool isRotation(const cv::Matx33d& R)
@@ -44,7 +49,8 @@ bool readPair(const std::string& line, ViewPair& pair)
         if (turns < 0 || turns > 3)
             return false;
     return pair.target.find(',') == std::string::npos && isCamera(pair.referenceCamera) &&
-           isCamera(pair.targetCamera) && isRotation(pair.rotation) && cv::norm(pair.translation) > 0;
+           isCamera(pair.targetCamera) && isRotation(pair.rotation) && cv::norm(pair.translation) > 0 &&
+           pose.row(3) == cv::Matx14d(0, 0, 0, 1);
 }
 
 //! From a camera's axes to those of the camera whose image is this one's turned by a quarter counter-clockwise.
@@ -71,6 +77,7 @@ std::vector<ViewPair> readPairList(const std::string& file, const std::string& f
     if (!in)
         CV_Error(cv::Error::StsObjectNotFound, file + ": cannot be read");
     std::vector<ViewPair> pairs;
+    std::set<std::string> known;
     std::string line;
     while (std::getline(in, line))
     {
@@ -79,6 +86,10 @@ std::vector<ViewPair> readPairList(const std::string& file, const std::string& f
             CV_Error(cv::Error::StsParseError,
                     cv::format("%s, line %d: not two images, their turns, cameras and pose, 38 words",
                             file.c_str(), int(pairs.size()) + 1));
+        if (!known.insert(pair.target).second)
+            CV_Error(cv::Error::StsParseError,
+                    cv::format("%s, line %d: the pair is there twice: take one of them out", file.c_str(),
+                            int(pairs.size()) + 1));
         pair.set = "list " + baseName(file);
         pair.referenceFile = fs::join(folder, pair.referenceFile);
         pair.targetFile = fs::join(folder, pair.targetFile);

@@ -35,9 +35,10 @@ std::map<std::string, std::vector<ViewFolder>> findViewFolders(const std::vector
 //! Two images of one scene from known places.
 struct ViewPair
 {
-    std::string set;       //!< name of the folder that holds the views' folders
-    std::string sequence;  //!< name of the target's folder
-    std::string target;    //!< the images' names, joined by a hyphen
+    std::string
+            set;  //!< name of the folder that holds the views' folders, or of a list of pairs (pair_list.hpp)
+    std::string sequence;  //!< name of the target's folder; of a list: of the reference's
+    std::string target;    //!< the images' names, joined by a hyphen; of a list: by a blank
     std::string referenceFile, targetFile;
     cv::Matx33d referenceCamera, targetCamera;  //!< focal lengths and centre, pixels
     cv::Matx33d rotation;                       //!< from the reference's axes to the target's

@@ -20,7 +20,7 @@ public:
     //! Keeps so many images of one detector each, of about a megabyte.
     explicit DescribedImages(size_t most = 200) : most_(most) {}
 
-    //! Of the image of a file. Two threads that ask for the same at once may both compute it.
+    //! Of the image of a file; an image that is changed before needs another name. Two threads that ask for the same at once may both compute it.
     Result get(const Detector& detector, const cv::Mat& image, const std::string& file)
     {
         const Key key(detector.name, file);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <set>
+
 #include "common/dataset.hpp"
 #include "common/metrics.hpp"
 #include "common/pair_list.hpp"
@@ -62,6 +64,12 @@ std::vector<LitPair> withRelit(const std::vector<ViewPair>& pairs)
     return all;
 }
 
+//! The name of a file, by which DescribedImages knows it as it is described.
+std::string asTurned(const std::string& file, int turns, int light)
+{
+    return cv::format("%s turned %d lit %d", file.c_str(), turns, light);
+}
+
 //! Camera matrices, rotation, translation: 9, 9, 9 and 3 numbers; x and y of each match in both images.
 std::string numbers(const ViewPair& pair, const Points& points)
 {
@@ -95,9 +103,15 @@ std::vector<ViewPair> viewPairs(const Options& options)
     if (options.pairs.empty())
         return findViewPairs(options.roots);
     std::vector<ViewPair> all;
+    std::set<std::string> names;
     for (const std::string& list : options.pairs)
+    {
+        if (!names.insert(baseName(list)).second)
+            CV_Error(cv::Error::StsBadArg, "two lists of pairs are called " + baseName(list) +
+                                                   ", as their results would be: rename one");
         for (const ViewPair& pair : readPairList(list, options.roots.front()))
             all.push_back(pair);
+    }
     return all;
 }
 
@@ -151,17 +165,15 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
             ViewPair views = pair.views;
             cv::Mat reference = readImage(views.referenceFile, cv::IMREAD_GRAYSCALE),
                     target = readImage(views.targetFile, cv::IMREAD_GRAYSCALE);
-            std::string name = views.targetFile;
             if (pair.light >= 0)
-            {
                 target = relit(target, pair.light);
-                name += std::to_string(pair.light);
-            }
             turnUpright(views, reference, target);
+            const std::string names[] = {asTurned(pair.views.referenceFile, pair.views.referenceTurns, -1),
+                    asTurned(pair.views.targetFile, pair.views.targetTurns, pair.light)};
             for (const Detector& detector : missing)
             {
-                const DescribedImages::Result r = described.get(detector, reference, views.referenceFile),
-                                              t = described.get(detector, target, name);
+                const DescribedImages::Result r = described.get(detector, reference, names[0]),
+                                              t = described.get(detector, target, names[1]);
                 for (size_t i = 0; i < r->size(); i++)
                     judge(views, detector.name, reference, target, (*r)[i], (*t)[i]);
             }

@@ -34,11 +34,15 @@ TEST(PairList, broken_lines_are_told)
 {
     const TestFolder folder;
     const std::string good = "a b 0 0" + CAMERAS + POSE, zeros = " 0 0 0 0 0 0 0 0 0";
-    for (const std::string& bad : {std::string(), std::string("a b"), "a b 0 0" + CAMERAS, good + " 1",
-                 "a b 4 0" + CAMERAS + POSE, "a b 0 -1" + CAMERAS + POSE, "a,b c 0 0" + CAMERAS + POSE,
-                 "a b 0 0" + zeros + zeros + POSE,                           // no camera
-                 "a b 0 0" + CAMERAS + " 1 0 0 1 0 1 0 2 0 0 -1 3 0 0 0 1",  // a mirror
-                 "a b 0 0" + CAMERAS + " 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"})  // no movement
+    for (const std::string& bad : {std::string(), std::string("a b"), "a c 0 0" + CAMERAS, good + " 1",
+                 "a c 4 0" + CAMERAS + POSE, "a c 0 -1" + CAMERAS + POSE, "a,b c 0 0" + CAMERAS + POSE,
+                 good,                                                  // twice
+                 "a c 0 0 9 1 9 0 9 9 0 0 1 9 0 9 0 9 9 0 0 1" + POSE,  // skew
+                 "a c 0 0 9 0 9 0 9 9 0 0 1 9 0 9 1 9 9 0 0 1" + POSE,
+                 "a c 0 0" + CAMERAS + " 1 0 0 1 0 1 0 2 0 0 1 3 0 0 0 2",
+                 "a c 0 0" + zeros + zeros + POSE,                           // no camera
+                 "a c 0 0" + CAMERAS + " 1 0 0 1 0 1 0 2 0 0 -1 3 0 0 0 1",  // a mirror
+                 "a c 0 0" + CAMERAS + " 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1"})  // no movement
     {
         folder.write("pairs.txt", good + "\n" + bad + "\n");
         EXPECT_NE(std::string::npos,
