@@ -27,6 +27,17 @@ bool finite(const std::vector<Point2d>& points)
             [](const Point2d& p) { return std::isfinite(p.x) && std::isfinite(p.y); });
 }
 
+//! Exactly, but for what is rounded: a rotation in its quaternion, and keypoints, whose pixels begin half a pixel further on.
+void checkSame(const PosedImage& again, const PosedImage& image)
+{
+    const Affine3d &a = again.cameraFromWorld, &b = image.cameraFromWorld;
+    FUZZ_CHECK(again.name == image.name && camerasOf(std::vector<PosedImage>{again, image}).size() == 1);
+    FUZZ_CHECK(a.translation() == b.translation() && norm(a.rotation() - b.rotation()) < 1e-12);
+    FUZZ_CHECK(again.sees == image.sees && again.pixels.size() == image.pixels.size());
+    for (size_t i = 0; i < image.pixels.size(); i++)
+        FUZZ_CHECK(norm(again.pixels[i] - image.pixels[i]) <= 1e-15 * (1 + norm(image.pixels[i])));
+}
+
 void check(const std::vector<PosedImage>& images)
 {
     bool known = true;
@@ -49,8 +60,7 @@ void check(const std::vector<PosedImage>& images)
     const std::vector<PosedImage> again = readModel(copy.name);
     FUZZ_CHECK(again.size() == images.size());
     for (size_t i = 0; i < images.size(); i++)
-        FUZZ_CHECK(again[i].name == images[i].name && again[i].pixels.size() == images[i].pixels.size() &&
-                   camerasOf(std::vector<PosedImage>{again[i], images[i]}).size() == 1);
+        checkSame(again[i], images[i]);
 }
 
 void run(ByteSource& in)
