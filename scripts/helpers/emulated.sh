@@ -82,6 +82,9 @@ EOF
     say "python/tests under qemu"
     cd "$root/python/tests"
     "$environment/bin/python" -m unittest discover
+    say "README's Python program under qemu"
+    sed -n '/^```python$/,/^```$/{/^```/!p}' "$root/README.md" >"$environment/match_pair.py"
+    "$environment/bin/python" "$environment/match_pair.py" "$root/tools/synthetic/day.png" "$root/tools/synthetic/night.png"
     exit 0
 fi
 

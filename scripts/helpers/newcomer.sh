@@ -1,6 +1,6 @@
 #!/bin/sh
 # Runs every command of README.md, in its order, on a bare Debian made by debootstrap, as someone would who has just
-# cloned the repository: what is in the `sh` blocks but for a wheel's, with the files of the `cmake`, `cpp` and `python` blocks beside it.
+# unpacked a release: what is in the `sh` blocks but for a wheel's, with the files of the `cmake`, `cpp` and `python` blocks beside it.
 # What README says of the packages of its first command, on Debian 12, must be within 5 % of what apt prints of them. The paths hold
 # spaces. Needs root; the bare system stays in the cache.
 #   scripts/helpers/newcomer.sh [SUITE] [WHEEL]    by default bookworm
