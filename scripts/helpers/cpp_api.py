@@ -3,7 +3,8 @@
 
 """Writes doc/api.md, the public names of the headers. What changed or went since the last release, of which header, class and
 line, has its own name and its class's as `code` in one item of CHANGELOG.md's newest section, under "Backward incompatible" if it
-was stable; changed bases of a class, and headers whose promise changed, have theirs. Before the first release's tag, and without git, that is since the last commit, or since the page was written.
+was stable; changed bases of a class, and headers whose promise changed, have theirs. Before the first release's tag, and without
+git, that is since the last commit, or since the page was written.
 
 It does not see what is the same in letters (another meaning, a macro's or constant's value), nor whether the item tells the truth.
 """
@@ -91,14 +92,19 @@ def declarations(text):
 def page():
     lines = ['# Public names, and what is promised of them', '',
              'Made from the headers by `scripts/helpers/cpp_api.py`; a test fails where they differ. What is in `opencv2/iib/detail` is for the',
-             'modules here, and no part of the interface. Files and bits: [releasing](releasing.md).']
+             'modules here, and no part of the interface. Files and bits: [releasing](releasing.md). Python and commands:',
+             '[another list](api_python.md).']
     for folder, promise in HEADERS.items():
         for header in sorted((ROOT / folder).rglob('*.hpp')):
             found = [] if 'detail' in header.parts else list(declarations(header.read_text()))
             if found:
-                lines += ['', '## %s' % header.relative_to(ROOT / folder), promise[0].upper() + promise[1:] + '.', '', '```cpp']
-                lines += ['    ' * depth + text for depth, text in found] + ['```']
+                lines += section(header.relative_to(ROOT / folder), promise, 'cpp', found)
     return '\n'.join(lines) + '\n'
+
+
+def section(header, promise, language, found):
+    return ['', '## %s' % header, promise[0].upper() + promise[1:] + '.', '', '```' + language,
+            *('    ' * depth + text for depth, text in found), '```']
 
 
 def promised(text):
@@ -113,13 +119,15 @@ def promised(text):
         elif header and line.strip() and not line.startswith('```'):
             owners = owners[:(len(line) - len(line.lstrip())) // 4 + 1]
             found[header, owners[-1], line.strip()] = stable
-            if re.match(r' *(class|struct) ', line):
+            if re.match(r' *(class|struct|command) ', line):
                 owners.append(name(line))
     return found
 
 
 def name(line):
-    """What one would call a declaration: the word before its arguments, its bases, its values or its end."""
+    """What one would call a declaration: the word before its arguments, its bases, its values or its end; of a command, its option."""
+    if line.startswith('-'):
+        return line.split()[0]
     if line.startswith('typedef'):
         return re.search(r'(\w+);', line)[1]
     return re.search(r'(operator\S+?|~?\w+)(?=\()|\w+(?=;| = | \{|$| :)', line)[0]
@@ -132,7 +140,7 @@ def untold(before, after):
 
     def told(text, *words):
         code = [' '.join(re.findall('`([^`]+)`', item)) for item in re.split(r'^- ', text, flags=re.MULTILINE)]
-        return any(all(re.search(r'(?<!\w)%s(?!\w)' % re.escape(word), item) for word in words) for item in code)
+        return any(all(re.search(r'(?<![\w-])%s(?![\w-])' % re.escape(word), item) for word in words) for item in code)
 
     def kept(header, owner, line):  # an enum may grow at its end
         return any(there[:2] == (header, owner) and (there[2] == line or line.startswith('enum') and there[2].startswith(line[:-3] + ','))
@@ -151,31 +159,31 @@ def untold(before, after):
     return gone
 
 
-def released():
+def released(path):
     """The page of the last release."""
     def git(*arguments):
         try:
             return subprocess.run(['git', '-C', str(ROOT), *arguments], capture_output=True, text=True, check=True).stdout
         except (OSError, subprocess.CalledProcessError):
             return ''
-    tag = git('describe', '--tags', '--abbrev=0', '--match', 'v*').strip()
-    return tag and git('show', tag + ':./doc/api.md') or git('show', 'HEAD:./doc/api.md') or PAGE.read_text()
+    tag, file = git('describe', '--tags', '--abbrev=0', '--match', 'v*').strip(), ':./' + path.relative_to(ROOT).as_posix()
+    return tag and git('show', tag + file) or git('show', 'HEAD' + file) or path.read_text() if path.exists() else ''
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def main(description, path, after):
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--check', action='store_true', help='write nothing; an error where the page would change')
     check = parser.parse_args().check
-    before, after = PAGE.read_text(), page()
+    before = path.read_text() if path.exists() else ''
     if check and before != after:
         changed = sorted(set(before.splitlines()) ^ set(after.splitlines()))
-        sys.exit('doc/api.md is not of these headers; scripts/helpers/cpp_api.py writes it anew:\n' + '\n'.join(changed))
-    missing = untold(released(), after)
+        sys.exit('%s is not of these sources; %s writes it anew:\n%s' % (path.name, pathlib.Path(sys.argv[0]).name, '\n'.join(changed)))
+    missing = untold(released(path), after)
     if missing:
         sys.exit('CHANGELOG.md does not tell, by their names and where it should, that these changed:\n' + '\n'.join(missing))
     if not check:
-        PAGE.write_text(after)
+        path.write_text(after)
 
 
 if __name__ == '__main__':
-    main()
+    main(__doc__, PAGE, page())

@@ -54,6 +54,29 @@ May change: news
 bool find(int a, double scale = .25);
 ```
 """
+PYTHON = """# Public names
+
+## package
+Stable: a word
+
+```python
+class P : tuple
+    P(count)
+    count
+    run(self, a=1)
+join(a, options=Options())
+```
+
+## program
+Stable: a word
+
+```text
+command map : folder
+    --map MAP
+command update : folder
+    --map MAP
+```
+"""
 CHANGELOG = """# Changelog
 
 ## Unreleased
@@ -112,10 +135,22 @@ class Test(unittest.TestCase):
         self.assertEqual(['May change'], self.untold(CHANGELOG % ('', ''), *added))  # but a promise
         self.assertEqual([], self.untold(CHANGELOG % ('', '- `b.hpp` is stable'), *added))
 
-    def test_the_page_as_it_is_committed(self):
-        for (_, owner, line), _ in cpp_api.promised(cpp_api.PAGE.read_text()).items():
-            self.assertRegex(cpp_api.name(line), r'^(~?\w+|operator=|May change|Stable)$', line)
-            self.assertRegex(owner, r'^\w*$')
+    def test_python_and_commands(self):
+        for change, gone, told in (
+                (('run(self, a=1)', 'run(self, a=2)'), 'P: run(self, a=1)', '`P.run`'),
+                (('    count\n', ''), 'P: count', '`P`: `count`'),
+                (('join(a, options=Options())', 'join(a)'), 'join(a, options=Options())', '`join`'),
+                (('update : folder\n    --map MAP\n', 'update : folder\n'), 'update: --map MAP', '`opencv-iib update --map`'),
+                (('command update : folder', 'command update :'), 'command update : folder', '`update`')):
+            for silent in '`run`, P', '`--map`\n- `update-all --map`', '`update-all`, `update_all --map-all`', '`joined`, count':
+                self.assertEqual([gone], self.untold(CHANGELOG % ('- ' + silent, ''), change, before=PYTHON), silent)
+            self.assertEqual([], self.untold(CHANGELOG % ('- ' + told, ''), change, before=PYTHON))
+
+    def test_the_pages_as_they_are_committed(self):
+        for page in cpp_api.PAGE, cpp_api.PAGE.with_name('api_python.md'):
+            for _, owner, line in cpp_api.promised(page.read_text()):
+                self.assertRegex(cpp_api.name(line), r'^(~?\w+|operator=|May change|Stable|--[a-z-]+)$', line)
+                self.assertRegex(owner, r'^\w*$')
 
 
 if __name__ == '__main__':
