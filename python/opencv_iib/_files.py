@@ -140,17 +140,17 @@ def replaced(*paths: str) -> Iterator[list[str]]:
 
 
 @contextmanager
-def only_writer(path: str) -> Iterator[None]:
-    """Locks a folder, or a file, which is made if it is missing, and removed if nothing came of it.
+def only_writer(path: str, is_folder: bool = False) -> Iterator[None]:
+    """Locks a folder that is there, or a file, which is made if it is missing, and removed if nothing came of it.
 
-    :raises FileExistsError: for a link, which could lead to files of others.
+    :raises FileExistsError: for a link, which could lead to files of others, and for a folder in a file's place.
     :raises BlockingIOError: if another process has it locked.
     """
-    if os.path.islink(path):
-        raise FileExistsError(f'{path} is a link: remove it, or choose another name')
+    if os.path.islink(path) or (os.path.isdir(path) and not is_folder):
+        raise FileExistsError(f'{path} is a {"link" if os.path.islink(path) else "folder"}: remove it, or choose another name')
     made = not os.path.exists(path)
     try:
-        lock = _core.FileLock(path)
+        lock = _core.FileLock(path, is_folder)
     except _core.error as e:
         raise BlockingIOError(str(e)) from None
     try:

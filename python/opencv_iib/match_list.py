@@ -40,7 +40,7 @@ class _Folder(contextlib.AbstractContextManager[Any]):
         table = os.path.join(path, TABLE)
         os.makedirs(path, exist_ok=True)
         self._lock = contextlib.ExitStack()
-        self._lock.enter_context(only_writer(path))
+        self._lock.enter_context(only_writer(path, is_folder=True))
         self._done: dict[tuple[str, str], list[str]] = {}
         if os.path.exists(table):
             with open(table, encoding='utf-8', newline='') as file:

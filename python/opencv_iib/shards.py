@@ -48,7 +48,7 @@ def write(folder: Path, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per
         raise FileExistsError(f'{folder} is there already: choose another folder, or add to it with MappedIndex')
     partial = folder + '.partial'
     os.makedirs(partial, exist_ok=True)
-    with only_writer(partial):
+    with only_writer(partial, is_folder=True):
         index = _write(partial, _images(codes, rows_per_shard), rows_per_shard, level_sizes)
         del index
         os.rename(partial, folder)

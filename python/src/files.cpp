@@ -33,8 +33,8 @@ void bindFiles(nb::module_& m)
                     [](const WholeFile& self) { return nb::bytes(self.part().data(), self.part().size()); })
             .def("commit", &WholeFile::commit, WithoutGil())
             .def("discard", &WholeFile::discard);
-    nb::class_<FileLock>(m, "FileLock").def("__init__", [](FileLock* self, nb::handle path) {
-        new (self) FileLock(pathOf(path), FileLock::REFUSE);
+    nb::class_<FileLock>(m, "FileLock").def("__init__", [](FileLock* self, nb::handle path, bool isFolder) {
+        new (self) FileLock(pathOf(path), isFolder ? FileLock::OUTPUT_FOLDER : FileLock::OUTPUT_FILE);
     });
     nb::class_<OutputFolder>(m, "OutputFolder").def("__init__", &makeFolder);
 }

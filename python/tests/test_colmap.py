@@ -201,7 +201,7 @@ class Runs(Collection):
             expect_kept(self.folder / f'database.db{name}')
         self.assertEqual(self.files(), ['images'], 'nothing is left of refused runs')
         partial.mkdir()
-        with self.assertRaisesRegex(FileExistsError, 'not of an unfinished run'):
+        with self.assertRaisesRegex(FileExistsError, 'is a folder'):
             self.build(force=True)
         partial.rmdir()
         with closing(sqlite3.connect(partial)) as other:

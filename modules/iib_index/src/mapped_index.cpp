@@ -161,7 +161,7 @@ private:
     // Whatever may throw comes before the commit: what is committed does not throw.
     void commit(const std::function<void(Manifest&)>& change)
     {
-        const FileLock lock(lockOf(folder), FileLock::WAIT);
+        const FileLock lock(lockOf(folder), FileLock::LOCK_FILE);
         removeUnfinished(folder);
         Manifest next = readManifest(manifestOf(folder));
         change(next);
@@ -184,7 +184,7 @@ Ptr<MappedIndex> MappedIndex::create(const String& folder, const std::vector<int
     PackedCodes::check(levelSizes);
     makeFolder(checkedName(folder));
     checkEmpty(folder);  // before the lock is in it
-    const FileLock lock(lockOf(folder), FileLock::WAIT);
+    const FileLock lock(lockOf(folder), FileLock::LOCK_FILE);
     checkEmpty(folder);
     Manifest manifest;
     manifest.levelSizes = levelSizes;

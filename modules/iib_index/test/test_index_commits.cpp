@@ -102,6 +102,17 @@ TEST_F(IIB_MappedIndex_Commits, remove_looks_at_the_last_commit)
     EXPECT_EQ(-1, search(*index, queries, 1).rows[0]);
 }
 
+// A file in its place would be in the way of who makes it again.
+TEST_F(IIB_MappedIndex_Commits, a_folder_that_another_process_has_removed_is_not_made_to_be_locked)
+{
+    const String gone = folder.name + "/gone", file = folder.name + "/lock";
+    for (const String& name : {gone, file})
+        expectError(Error::StsError, name, [&] { FileLock(name, FileLock::OUTPUT_FOLDER); });
+    EXPECT_FALSE(utils::fs::exists(gone));
+    const FileLock lock(folder.name, FileLock::OUTPUT_FOLDER);
+    expectError(Error::StsError, "another process", [&] { FileLock(folder.name, FileLock::OUTPUT_FOLDER); });
+}
+
 #ifdef __linux__
 // It keeps the files that were open: the lock too.
 TEST_F(IIB_MappedIndex_Commits, a_child_forked_meanwhile_does_not_keep_the_lock)
@@ -127,6 +138,7 @@ TEST_F(IIB_MappedIndex_Commits, a_child_forked_meanwhile_does_not_keep_the_lock)
     waitpid(child, 0, 0);
 }
 
+// Who waited for the removed file's lock waits for that of the file in its place, as of an index that was made again.
 TEST_F(IIB_MappedIndex_Commits, a_lock_on_a_file_that_another_process_has_removed_is_none)
 {
     const String name = folder.name + "/lock";
@@ -142,16 +154,34 @@ TEST_F(IIB_MappedIndex_Commits, a_lock_on_a_file_that_another_process_has_remove
     };
     for (bool again : {false, true})
     {
-        Ptr<FileLock> lock = makePtr<FileLock>(name, FileLock::WAIT);
-        std::thread waiting([&] { EXPECT_THROW(FileLock(name, FileLock::WAIT), cv::Exception); });
+        Ptr<FileLock> lock = makePtr<FileLock>(name, FileLock::LOCK_FILE), next;
+        std::atomic<bool> held(false);
+        std::thread waiting([&] {
+            const FileLock own(name, FileLock::LOCK_FILE);
+            held = true;
+        });
         while (timesOpened() < 2)
             usleep(1000);
         std::remove(name.c_str());
         if (again)
-            writeFile(name, "");
+            next = makePtr<FileLock>(name, FileLock::LOCK_FILE);
         lock.release();
+        while (again && timesOpened() < 2)
+            usleep(1000);
+        EXPECT_FALSE(again && held);
+        next.release();
         waiting.join();
+        EXPECT_TRUE(held);
     }
+    Ptr<FileLock> lock = makePtr<FileLock>(name, FileLock::LOCK_FILE);
+    std::thread waiting([&] {
+        expectError(Error::StsError, "check the folder", [&] { FileLock(name, FileLock::LOCK_FILE); });
+    });
+    while (timesOpened() < 2)
+        usleep(1000);
+    utils::fs::remove_all(folder.name);
+    lock.release();
+    waiting.join();
 }
 
 TEST_F(IIB_MappedIndex_Commits, full_disk_keeps_the_last_commit)

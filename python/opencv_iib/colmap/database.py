@@ -86,8 +86,6 @@ class Database(contextlib.AbstractContextManager['Database']):
         :raises FileExistsError: for a file that no such run has left.
         """
         self.path, self.partial, self._finished = path, path + '.partial', False
-        if os.path.isdir(self.partial):
-            self._refuse()
         if not os.path.exists(self.partial) or not os.path.getsize(self.partial):
             for log in LOGS:
                 if os.path.lexists(self.partial + log):

@@ -261,10 +261,13 @@ void openToRead(std::filebuf& file, const String& name)
 }
 
 #ifdef _WIN32
-FileLock::FileLock(const String& name, Busy busy)
+FileLock::FileLock(const String& name, What what)
 {
-    const bool waits = busy == WAIT;
+    const bool waits = what == LOCK_FILE;
     const String& path = waits ? name : name + ".lock";  // of a folder, or a file that others open
+    const Present there = presentAt(name);
+    if (what == OUTPUT_FOLDER && (!there.any || there.file))
+        CV_Error(Error::StsError, "Cannot write " + name + ": it is no folder");
     while ((file = CreateFileW(systemName(path).c_str(), GENERIC_WRITE, 0, 0,
                     waits ? OPEN_ALWAYS : CREATE_NEW,
                     waits ? FILE_ATTRIBUTE_NORMAL : FILE_FLAG_DELETE_ON_CLOSE, 0)) == INVALID_HANDLE_VALUE)
@@ -282,24 +285,29 @@ FileLock::FileLock(const String& name, Busy busy)
 
 FileLock::~FileLock() { CloseHandle(file); }
 #else
-FileLock::FileLock(const String& name, Busy busy)
+FileLock::FileLock(const String& name, What what)
 {
-    struct stat there, locked;
-    const bool isFolder = stat(name.c_str(), &there) == 0 && S_ISDIR(there.st_mode);
-    file = ::open(name.c_str(),
-            O_CLOEXEC | (isFolder ? O_RDONLY : O_RDWR | O_CREAT) | (busy == WAIT ? 0 : O_NOFOLLOW), 0666);
-    int result = -1;
-    while (file >= 0 && (result = flock(file, busy == WAIT ? LOCK_EX : LOCK_EX | LOCK_NB)) != 0 &&
-            errno == EINTR)
-        continue;
-    const bool held = result == 0 || (file >= 0 && errno == EWOULDBLOCK);
-    if (result == 0 && fstat(file, &locked) == 0 && stat(name.c_str(), &there) == 0 &&
-            locked.st_dev == there.st_dev && locked.st_ino == there.st_ino)
-        return;  // else another process has removed it, and only then unlocked it
-    if (file >= 0)
-        close(file);
-    if (held)
-        CV_Error(Error::StsError, name + " is being written by another process: wait until it has ended");
+    const bool waits = what == LOCK_FILE;
+    const int flags = O_CLOEXEC | (waits ? 0 : O_NOFOLLOW) |
+                      (what == OUTPUT_FOLDER ? O_RDONLY | O_DIRECTORY : O_RDWR | O_CREAT);
+    bool other = true;  // whether another process has it, or had it when it was opened
+    while (other)
+    {
+        file = ::open(name.c_str(), flags, 0666);
+        int result = -1;
+        while (file >= 0 && (result = flock(file, waits ? LOCK_EX : LOCK_EX | LOCK_NB)) != 0 &&
+                errno == EINTR)
+            continue;
+        other = result == 0 || (file >= 0 && errno == EWOULDBLOCK);
+        struct stat there, locked;
+        if (result == 0 && fstat(file, &locked) == 0 && stat(name.c_str(), &there) == 0 &&
+                locked.st_dev == there.st_dev && locked.st_ino == there.st_ino)
+            return;  // else another process has removed it, and only then unlocked it
+        if (file >= 0)
+            close(file);
+        if (other && !waits)
+            CV_Error(Error::StsError, name + " is being written by another process: wait until it has ended");
+    }
     CV_Error(Error::StsError, "Cannot write " + name + ": check the folder and its rights");
 }
 

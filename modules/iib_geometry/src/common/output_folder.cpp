@@ -18,7 +18,7 @@ OutputFolder::OutputFolder(const std::string& folder, const std::function<bool(c
     if (!fs::is_directory(path, unknown))
         CV_Error(Error::StsError,
                 folder + " cannot be written: " + (error ? error.message() : "it is a file"));
-    lock_ = std::make_unique<FileLock>(path_, FileLock::REFUSE);
+    lock_ = std::make_unique<FileLock>(path_, FileLock::OUTPUT_FOLDER);
     error.clear();
     for (fs::recursive_directory_iterator entry(path, error), last; !error && entry != last;
             entry.increment(error))

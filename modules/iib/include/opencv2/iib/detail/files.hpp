@@ -76,19 +76,19 @@ CV_EXPORTS void writeText(const String& filename, const String& text);
 void openToRead(std::filebuf& file, const String& name);
 
 #ifndef OPENCV_BINDING_PARSER  // its numbers are nothing for Python
-/** Holds a lock among processes and threads to its end. The system gives the lock of a killed process back.
-Two uses: a file that is made for it if it is missing, and stays, whose lock is waited for; and a folder, or a file that others
-write, whose lock is refused while another holds it (Windows: by a file NAME.lock beside it, which goes with the lock). */
+//! Holds a lock among processes and threads to its end. The system gives the lock of a killed process back.
 class CV_EXPORTS FileLock
 {
 public:
-    enum Busy
+    //! The last two are refused while another holds their lock (Windows: by a file NAME.lock beside it, which goes with the lock).
+    enum What
     {
-        WAIT,
-        REFUSE
+        LOCK_FILE,     //!< made for the lock if it is missing, and stays; its lock is waited for
+        OUTPUT_FILE,   //!< made if it is missing
+        OUTPUT_FOLDER  //!< never made: another process may have removed it meanwhile
     };
     //! @throws cv::Exception if it cannot be locked.
-    FileLock(const String& name, Busy busy);
+    FileLock(const String& name, What what);
     ~FileLock();
     FileLock(const FileLock&) = delete;
     FileLock& operator=(const FileLock&) = delete;
