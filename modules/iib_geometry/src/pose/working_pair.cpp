@@ -134,8 +134,8 @@ AlignedPoints WorkingPair::match(bool rotated) const
     {
         const Ptr<IIBDescriptorExtractor> extractor = IIBDescriptorExtractor::createRecommended(FEATURES);
         extractor->setOrientation(IIBDescriptorExtractor::ORIENTATION_KEYPOINT);
-        matchRotated(images_[0]->pixels(factors_[0]), images_[1]->pixels(factors_[1]), extractor, matcher,
-                result.keypoints[0], result.keypoints[1], matches);
+        matchRotated(images_[0]->pixels(factors_[0]), result.keypoints[0], images_[1]->pixels(factors_[1]),
+                result.keypoints[1], extractor, matcher, matches);
     }
     if (matches.empty())
         return result;

@@ -163,6 +163,18 @@ TEST(Alignment, looks_at_what_masks_allow)
         EXPECT_ANY_THROW(ImageAligner::create(reference, ALIGN_TRANSLATION, wrong));
 }
 
+TEST(Alignment, looks_at_what_masks_allow_in_images_that_are_turned)
+{
+    const Mat reference = picture(2);
+    Mat image, mask(SIZE, CV_8U, Scalar(0)), transform, matches;
+    rotate(reference, image, ROTATE_90_CLOCKWISE);
+    mask.colRange(200, 400) = 1;
+    const Ptr<ImageAligner> aligner = ImageAligner::create(reference, ALIGN_SIMILARITY, mask);
+    ASSERT_TRUE(aligner->align(image, transform, noArray(), matches));
+    for (int i = 0; i < matches.rows; i++)
+        ASSERT_GE(matches.at<float>(i, 0), 199.f);
+}
+
 //! As large as it says, on average over many noisy sets of matches.
 TEST(Alignment, deviation_foretells_the_errors_of_the_corners)
 {
