@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// ImageAligner and alignImages with small images of any type, masks and models: a cv::Exception for what the header forbids and
+// for nothing else; else no transform with a reason, or one with no more freedom than the model, of matches that masks allow.
+
+#include "images.hpp"
+
+#include "opencv2/iib/alignment.hpp"
+#include "opencv2/imgproc.hpp"
+
+#include <map>
+
+namespace {
+
+using namespace fuzz;
+using namespace cv::iib;
+
+const int SIDE = 128;
+
+//! Patches of a few pixels, another picture for each seed.
+const Mat& texture(int seed)
+{
+    static std::map<int, Mat> known;
+    Mat& picture = known[seed];
+    if (picture.empty())
+    {
+        Mat coarse(SIDE / 4, SIDE / 4, CV_8U);
+        RNG(seed + 1).fill(coarse, RNG::UNIFORM, 20, 235);
+        resize(coarse, picture, Size(SIDE, SIDE), 0, 0, INTER_CUBIC);
+    }
+    return picture;
+}
+
+//! From pixels of the image to those of the texture, by more or less freedom.
+Matx33d takeTransform(ByteSource& in)
+{
+    const auto upTo = [&](double most) { return most * in.between(-100, 100) / 100; };
+    Matx33d transform(1, 0, upTo(20), 0, 1, upTo(20), 0, 0, 1);
+    if (in.flag())
+    {
+        const double turn = upTo(in.rarely(4) ? CV_PI : .4);
+        const Vec2d axis = (1 + upTo(.4)) * Vec2d(std::cos(turn), std::sin(turn));
+        transform = transform * Matx33d(axis[0], -axis[1], 0, axis[1], axis[0], 0, 0, 0, 1);
+    }
+    if (in.flag())
+        transform = transform * Matx33d(1 + upTo(.2), upTo(.2), 0, 0, 1, 0, 0, 0, 1);
+    return in.flag() ? Matx33d(1, 0, 0, 0, 1, 0, upTo(2e-3), upTo(2e-3), 1) * transform : transform;
+}
+
+//! A picture of one seed in most runs, moved, in its light and type; or anything.
+Mat takePicture(ByteSource& in, int seed, const Matx33d& transform)
+{
+    if (in.rarely(16))
+    {
+        const Size size = takeSize(in);
+        return takeImage(in, size, in.flag());
+    }
+    const int width = in.between(1, 6) * SIDE / 8;
+    const Size size(width, in.between(1, 6) * SIDE / 8);
+    Mat image;
+    warpPerspective(texture(in.rarely(8) ? seed + 1 : seed), image, transform, size, INTER_LINEAR,
+            in.flag() ? BORDER_REFLECT : BORDER_CONSTANT);
+    const int depth = takeDepth(in), channels = in.between(1, 4);
+    image.convertTo(image, depth, in.between(0, 20) / 10. * (depth == CV_8U ? 1 : 256), in.between(-60, 60));
+    merge(std::vector<Mat>((size_t)(channels == 2 ? 1 : channels), image), image);
+    return image;
+}
+
+//! Of the image's size in most runs; empty in half of them.
+Mat takeMask(ByteSource& in, const Mat& image)
+{
+    if (in.flag())
+        return Mat();
+    Mat mask(in.rarely(16) ? takeSize(in) : image.size(), in.rarely(32) ? CV_16U : CV_8U,
+            Scalar(in.between(0, 255)));
+    const Rect part(in.between(0, SIDE), in.between(0, SIDE), in.between(1, SIDE), in.between(1, SIDE));
+    mask(part & Rect(Point(), mask.size())).setTo(in.between(0, 1));
+    return mask;
+}
+
+bool isTaken(const Mat& image) { return image.empty() || isImage(image); }
+
+bool fits(const Mat& mask, const Mat& image)
+{
+    return mask.empty() || (mask.type() == CV_8U && mask.size() == image.size());
+}
+
+void checkAnswer(const Mat& reference, const Mat& mask, const Mat& image, int model, const Mat& found,
+        const Mat& error, const Mat& matches)
+{
+    FUZZ_CHECK(found.size() == Size(3, 3) && found.type() == CV_64F && checkRange(found));
+    FUZZ_CHECK(error.size() == Size(1, 4) && error.type() == CV_64F && checkRange(error));
+    const Matx33d m(found);
+    FUZZ_CHECK(m(2, 2) == 1 && determinant(m) != 0);
+    // What the model leaves free, but for rounding.
+    const double most = 1e-9 * norm(m);
+    FUZZ_CHECK(model == ALIGN_HOMOGRAPHY || std::hypot(m(2, 0), m(2, 1)) <= most);
+    FUZZ_CHECK(model >= ALIGN_AFFINE || std::hypot(m(0, 0) - m(1, 1), m(0, 1) + m(1, 0)) <= most);
+    FUZZ_CHECK(model != ALIGN_TRANSLATION || std::hypot(m(0, 0) - 1, m(0, 1)) <= most);
+    for (int k = 0; k < 4; k++)
+        FUZZ_CHECK(error.at<double>(k) > 0);
+    FUZZ_CHECK(!matches.empty());
+    for (int i = 0; i < matches.rows; i++)
+    {
+        const Vec4f match = matches.at<Vec4f>(i);
+        const Rect2f there(Point2f(-3, -3), Size2f(image.size()) + Size2f(6, 6));
+        const Point first((int)(match[0] + .5f), (int)(match[1] + .5f));  // as OpenCV masks keypoints
+        FUZZ_CHECK(Rect(Point(), reference.size()).contains(first) &&
+                   there.contains(Point2f(match[2], match[3])));
+        FUZZ_CHECK(mask.empty() || mask.at<uchar>(first) != 0);
+    }
+}
+
+void run(ByteSource& in)
+{
+    const int seed = in.between(0, 3), model = in.between(-in.rarely(32), ALIGN_HOMOGRAPHY);
+    const Mat reference = takePicture(in, seed, Matx33d::eye()), mask = takeMask(in, reference);
+    useThreads(1);
+    Ptr<ImageAligner> aligner;
+    FUZZ_CHECK(refused([&] { aligner = ImageAligner::create(reference, model, mask); }) ==
+               (model < 0 || !fits(mask, reference)));
+    for (int images = in.between(1, 2); images > 0 && aligner; images--)
+    {
+        const Mat image = takePicture(in, seed, takeTransform(in)), other = takeMask(in, image);
+        Mat found, error, matches, again(1, 1, CV_8U);
+        String reason;
+        bool aligned = false;
+        const bool thrown =
+                refused([&] { aligned = aligner->align(image, found, error, matches, &reason, other); });
+        FUZZ_CHECK(thrown == !(isTaken(reference) && isTaken(image) && fits(other, image)));
+        if (thrown)
+            continue;
+        FUZZ_CHECK(aligned == reason.empty() &&
+                   (matches.empty() || (matches.cols == 4 && matches.type() == CV_32F)));
+        FUZZ_CHECK(aligned || (found.empty() && error.empty()));
+        if (aligned)
+            checkAnswer(reference, mask, image, model, found, error, matches);
+        if (mask.empty() && other.empty() && in.rarely(8))
+        {
+            FUZZ_CHECK(alignImages(reference, image, again, model) == aligned);
+            FUZZ_CHECK(again.size() == found.size() && (found.empty() || norm(again, found, NORM_INF) == 0));
+        }
+    }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }
