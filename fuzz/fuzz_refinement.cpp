@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// refineMatches and propagateMatches with any images, keypoints and matches: a cv::Exception, or outputs of the documented
-// shapes, where what is refused stays as it was.
+// refineMatches and propagateMatches with any images, keypoints and matches: a cv::Exception of both for what is no input, else
+// outputs of the documented shapes, where what is refused stays as it was, and what is added is as the header says.
 
 #include "images.hpp"
 #include "test_precomp.hpp"
@@ -15,7 +15,7 @@ using namespace opencv_test;
 
 std::vector<KeyPoint> takeKeyPoints(ByteSource& in, Size size)
 {
-    std::vector<KeyPoint> keypoints(in.between(0, 6));
+    std::vector<KeyPoint> keypoints(in.between(0, 12));
     for (KeyPoint& kp : keypoints)
     {
         const bool wild = in.rarely(16);
@@ -36,6 +36,47 @@ bool allValid(const std::vector<KeyPoint>& keypoints)
     return true;
 }
 
+//! What a call returns for each match.
+struct Refined
+{
+    Mat points1, points2, covariances, similarities;
+};
+
+void check(const Refined& r, const std::vector<DMatch>& matches, const std::vector<KeyPoint>* keypoints)
+{
+    const int n = (int)matches.size();
+    FUZZ_CHECK(r.points1.rows == n && r.points2.rows == n && r.covariances.rows == n &&
+               r.similarities.rows == n);
+    FUZZ_CHECK(n == 0 || (checkRange(r.covariances) && checkRange(r.points2 * 0)));
+    for (int i = 0; i < n; i++)
+    {
+        const Point2f first = keypoints[0][matches[i].queryIdx].pt,
+                      second = keypoints[1][matches[i].trainIdx].pt;
+        const float similarity = r.similarities.at<float>(i);
+        FUZZ_CHECK(r.points1.at<Point2f>(i) == first);
+        FUZZ_CHECK(
+                similarity == -1 ? r.points2.at<Point2f>(i) == second : similarity > .5f && similarity <= 1);
+        FUZZ_CHECK(r.covariances.at<float>(i, 0) >= 0 && r.covariances.at<float>(i, 2) >= 0);
+    }
+}
+
+bool equal(const Mat& few, const Mat& more)
+{
+    return few.empty() || cvtest::norm(few, more.rowRange(0, few.rows), NORM_INF) == 0;
+}
+
+//! What was found besides the matches that were given.
+void checkAdded(const std::vector<DMatch>& matches, size_t given, const Mat& similarities)
+{
+    for (size_t i = given; i < matches.size(); i++)
+    {
+        FUZZ_CHECK(similarities.at<float>((int)i) > .7f && matches[i].distance == DMatch().distance);
+        for (size_t k = 0; k < i; k++)
+            FUZZ_CHECK(
+                    matches[k].queryIdx != matches[i].queryIdx && matches[k].trainIdx != matches[i].trainIdx);
+    }
+}
+
 void run(ByteSource& in)
 {
     Mat images[2];
@@ -46,48 +87,48 @@ void run(ByteSource& in)
         images[i] = takeImage(in, size, in.rarely(32));
         keypoints[i] = takeKeyPoints(in, size);
     }
-    if (in.flag())
+    const bool alike = in.flag();  // so that matches are right, and lead to others
+    if (alike || in.flag())
         images[1] = images[0];
+    if (alike)
+        keypoints[1] = keypoints[0];
     useThreads(in.rarely(128) ? 3 : 1);
-    std::vector<DMatch> matches(in.between(0, 8));
+    std::vector<DMatch> matches(in.between(0, alike ? (int)keypoints[0].size() : 8));
+    const auto takeIndex = [&](int image) {
+        return in.rarely(64) ? in.between(-1, 13)
+                             : in.between(0, std::max((int)keypoints[image].size() - 1, 0));
+    };
     bool valid = true;
     for (DMatch& m : matches)
     {
-        m.queryIdx =
-                in.rarely(32) ? in.between(-1, 9) : in.between(0, std::max((int)keypoints[0].size() - 1, 0));
-        m.trainIdx =
-                in.rarely(32) ? in.between(-1, 9) : in.between(0, std::max((int)keypoints[1].size() - 1, 0));
+        m.queryIdx = alike ? (int)(&m - matches.data()) : takeIndex(0);
+        m.trainIdx = alike && !in.rarely(16) ? m.queryIdx : takeIndex(1);
         valid = valid && m.queryIdx >= 0 && m.queryIdx < (int)keypoints[0].size() && m.trainIdx >= 0 &&
                 m.trainIdx < (int)keypoints[1].size();
     }
     for (int i = 0; i < 2; i++)
         valid = valid && allValid(keypoints[i]) && !images[i].empty() && isImage(images[i]);
-    Mat points1, points2, covariances, similarities;
-    const bool thrown = refused([&] {
-        refineMatches(images[0], keypoints[0], images[1], keypoints[1], matches, points1, points2,
-                covariances, similarities);
-    });
-    FUZZ_CHECK(thrown == (!valid && !matches.empty()));
-    if (thrown)
-        return;
-    const int n = (int)matches.size();
-    FUZZ_CHECK(points1.rows == n && points2.rows == n && covariances.rows == n && similarities.rows == n);
-    for (int i = 0; i < n; i++)
-    {
-        const Point2f first = keypoints[0][matches[i].queryIdx].pt,
-                      second = keypoints[1][matches[i].trainIdx].pt;
-        const Point2f found = points2.at<Point2f>(i);
-        const float similarity = similarities.at<float>(i);
-        FUZZ_CHECK(points1.at<Point2f>(i) == first);
-        FUZZ_CHECK(similarity == -1 ? found == second : similarity > .5f && similarity <= 1);
-        FUZZ_CHECK(covariances.at<float>(i, 0) >= 0 && covariances.at<float>(i, 2) >= 0 &&
-                   checkRange(covariances));
-    }
+    valid = valid || matches.empty();  // nothing is looked at then
+    Refined alone, propagated;
+    FUZZ_CHECK(refused([&] {
+        refineMatches(images[0], keypoints[0], images[1], keypoints[1], matches, alone.points1, alone.points2,
+                alone.covariances, alone.similarities);
+    }) == !valid);
     std::vector<DMatch> more = matches;
-    Mat first, second;
-    propagateMatches(images[0], keypoints[0], images[1], keypoints[1], more, first, second);
-    FUZZ_CHECK((int)more.size() >= n && first.rows == (int)more.size() && second.rows == first.rows);
-    FUZZ_CHECK(n == 0 || cvtest::norm(points2, second.rowRange(0, n), NORM_INF) == 0);
+    FUZZ_CHECK(refused([&] {
+        propagateMatches(images[0], keypoints[0], images[1], keypoints[1], more, propagated.points1,
+                propagated.points2, propagated.covariances, propagated.similarities);
+    }) == !valid);
+    FUZZ_CHECK(more.size() >= matches.size() && (valid || more.size() == matches.size()));
+    for (size_t i = 0; i < matches.size(); i++)
+        FUZZ_CHECK(more[i].queryIdx == matches[i].queryIdx && more[i].trainIdx == matches[i].trainIdx);
+    if (!valid)
+        return;
+    check(alone, matches, keypoints);
+    check(propagated, more, keypoints);
+    FUZZ_CHECK(equal(alone.points2, propagated.points2) && equal(alone.covariances, propagated.covariances) &&
+               equal(alone.similarities, propagated.similarities));
+    checkAdded(more, matches.size(), propagated.similarities);
 }
 
 }  // namespace
