@@ -95,7 +95,10 @@ void rotation(ByteSource& in)
 //! Any images and keypoints, of which few are refused.
 void matchImages(ByteSource& in)
 {
-    const Ptr<IIB> iib = IIB::createPreset(in.between(0, 9), 2.f);
+    static Ptr<IIB> presets[10];  // making one takes longer than matching
+    Ptr<IIB>& iib = presets[in.between(0, 9)];
+    if (!iib)
+        iib = IIB::createPreset((int)(&iib - presets), 2.f);
     iib->setOrientation(IIB::ORIENTATION_KEYPOINT);
     iib->setBorder(in.between(0, 2));
     Mat images[2];

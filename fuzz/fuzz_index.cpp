@@ -26,7 +26,7 @@ std::string withChecksum(std::string bytes)
 
 void checkIndex(const Ptr<HierarchicalMatcher>& matcher)
 {
-    const opencv_test::TemporaryFile copy;
+    static const opencv_test::TemporaryFile copy;
     matcher->saveIndex(copy.name);
     const Ptr<HierarchicalMatcher> again = HierarchicalMatcher::loadIndex(copy.name);
     FUZZ_CHECK(matcher->levelSizes() == again->levelSizes() &&

@@ -52,7 +52,7 @@ void check(const std::vector<PosedImage>& images)
         for (int point : image.sees)
             points = std::max(points, point + 1);
     }
-    const opencv_test::TemporaryFolder copy;
+    static const opencv_test::TemporaryFolder copy;
     const std::vector<Point3d> places(points);
     FUZZ_CHECK(refused([&] { writeModel(copy.name, images, places); }) == !known);
     if (!known)

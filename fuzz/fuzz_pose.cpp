@@ -22,13 +22,15 @@ const double FARTHEST_POINT = 1e9;  // that the functions take
 
 double takeNumber(ByteSource& in, double usual) { return in.rarely(32) ? in.number() : usual; }
 
-//! Matches of one kind and size, with some numbers in them that are anything.
+//! Matches of one kind and size, with some numbers in them that are anything. Rarely many of them are wrong, since that takes long.
 void takeMatches(ByteSource& in, Mat& first, Mat& second)
 {
-    const int kind = in.between(0, 4), count = in.between(0, MOST);
-    const double size = std::pow(10., in.rarely(4) ? in.between(-12, 9) : 0);
+    const int kind = in.between(0, 4);
+    const bool slow = in.rarely(64);
+    const int count = in.between(0, slow ? MOST : kind == 4 ? 7 : 14);
+    const double size = std::pow(10., in.rarely(8) ? in.between(-12, 9) : 0);
     RNG random(in.take<uchar>() + 1);
-    const double noise = in.between(0, 8) / 4.;
+    const double noise = in.between(0, 8) / (slow ? 4. : 32.);
     const Vec3d t = in.flag() ? Vec3d(.3, .1, 0) : Vec3d();
     first.create(count, 2, CV_64F);
     second.create(count, 2, CV_64F);
