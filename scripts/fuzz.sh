@@ -1,25 +1,56 @@
 #!/bin/sh
 # Fuzzes the library with clang's libFuzzer, address and undefined-behaviour sanitizers:
-# scripts/fuzz.sh [--plain] [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each, one a core. What is
-# found on the way stays in build-fuzz/corpus and makes the next run start further on; an input that fails is
+# scripts/fuzz.sh [--plain] [--keep] [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each, one a core. What
+# is found on the way stays in the cache folder and makes the next run, of any checkout, start further on; an input that fails is
 # kept in build-fuzz/failures and belongs into fuzz/corpus, with a test, once the bug is fixed. --plain leaves the
 # sanitizers out and makes inputs smaller, so that many times as many are compared with the oracles; its corpus is the
-# same.
+# same. --keep adds the smallest inputs to fuzz/corpus that reach code which none of its own does.
+# scripts/fuzz.sh --document fuzzes nothing: it adds what was executed since the last time to doc/results/fuzz.csv.
 . "$(dirname "$0")/helpers/lib.sh"
 
-plain=""
-if [ "${1:-}" = --plain ]; then
-    plain=yes
-    shift
-fi
-seconds=60
-if [ "${1:-}" = -s ]; then
-    case "${2:-}" in
-    "" | *[!0-9]*) fail "-s takes a number of seconds" ;;
+corpus="$cache/fuzz" counts="$cache/fuzz/executions" table="$root/doc/results/fuzz.csv"
+mkdir -p "$corpus"
+
+# document: the table with the runs in $counts, TARGET,KIND,EXECUTIONS,DATE each, which are then forgotten.
+document() {
+    touch "$counts"
+    mv "$counts" "$counts.new"
+    awk -F, '
+        NF == 5 && NR > 1 { sanitized[$1] = $2; plain[$1] = $3; since[$1] = $5 }
+        NF == 4 && $2 == "plain" { plain[$1] += $3 }
+        NF == 4 && $2 == "sanitized" { sanitized[$1] += $3 }
+        NF == 4 && !($1 in since) { since[$1] = $4 }
+        END { for (target in since) printf "%s %.0f %.0f %s\n", target, sanitized[target], plain[target], since[target] }
+        ' "$table" "$counts.new" | sort | {
+        echo "target,sanitized,plain,kept,since"
+        while read -r target sanitized plain since; do
+            echo "$target,$sanitized,$plain,$(ls "$root/fuzz/corpus/$target" | wc -l),$since"
+        done
+    } >"$table.new"
+    mv "$table.new" "$table"
+    rm "$counts.new"
+}
+
+plain="" keep="" seconds=60
+while true; do
+    case "${1:-}" in
+    --plain) plain=yes ;;
+    --keep) keep=yes ;;
+    -s)
+        case "${2:-}" in
+        "" | *[!0-9]*) fail "-s takes a number of seconds" ;;
+        esac
+        seconds=$2
+        shift
+        ;;
+    --document)
+        document
+        exit 0
+        ;;
+    *) break ;;
     esac
-    seconds=$2
-    shift 2
-fi
+    shift
+done
 known=$(sed -n 's/^set(fuzz_targets \(.*\))$/\1/p' "$root/fuzz/CMakeLists.txt")
 [ $# -gt 0 ] || set -- $known
 for target in "$@"; do
@@ -30,12 +61,12 @@ for target in "$@"; do
 done
 need $build_packages clang xz-utils
 if [ -n "$plain" ]; then
-    build="$root/build-fuzz-plain" longest=40
+    build="$root/build-fuzz-plain" longest=40 kind=plain
     # Where numbers are compared is not recorded: it takes half of the time.
     configure -DCMAKE_CXX_COMPILER=clang++ -DIIB_SANITIZE=fuzzer \
         -DCMAKE_CXX_FLAGS=-fno-sanitize-coverage=trace-cmp
 else
-    build="$root/build-fuzz" longest=512
+    build="$root/build-fuzz" longest=512 kind=sanitized
     # The last sanitizer finds casts of numbers too large for an integer, whose result depends on the machine.
     configure -DCMAKE_CXX_COMPILER=clang++ -DIIB_SANITIZE=fuzzer,address,undefined,float-cast-overflow
 fi
@@ -48,7 +79,7 @@ cmake --build "$build" --target $(printf 'iib_fuzz_%s ' "$@")
 # under the sanitizers have all of it.
 export ASAN_OPTIONS="malloc_context_size=0:quarantine_size_mb=4:${ASAN_OPTIONS:-}"
 [ -d /dev/shm ] && export OPENCV_TEMP_PATH=/dev/shm
-corpus="$root/build-fuzz/corpus" failures="$root/build-fuzz/failures"
+failures="$root/build-fuzz/failures"
 mkdir -p "$failures"
 
 # run TARGET OPTION...: on its inputs, as a child that goes when this process is ended.
@@ -77,6 +108,10 @@ fuzz() {
     if run "$1" -max_total_time="$seconds" -print_final_stats=1 && { [ -n "$plain" ] || replay "$1"; }; then
         executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$1.log" | head -n 1)
         echo "$1: $executions executions, $(ls "$corpus/$1" | wc -l) inputs kept"
+        echo "$1,$kind,$executions,$(date +%F)" >>"$counts"
+        # Into the first folder; the lines that are reached count, not how often.
+        [ -z "$keep" ] || "$build/fuzz/iib_fuzz_$1" -merge=1 -use_counters=0 -max_len=$longest "$root/fuzz/corpus/$1" \
+            "$corpus/$1" >>"$build/$1.log" 2>&1
         touch "$build/$1.passed"
     else
         tail -n 30 "$build/$1.log" | sed "s/^/$1: /"  # others write meanwhile

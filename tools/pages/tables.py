@@ -423,6 +423,11 @@ def scale():
     return json.loads((RESULTS / 'scale.json').read_text())
 
 
+def fuzzing():
+    return table(('target', 'executions with sanitizers', 'without', 'inputs kept', 'since'), [
+        ('`%s`' % row['target'], *(format(int(row[key]), ',') for key in ('sanitized', 'plain')), str(row['kept']), row['since']) for row in rows('fuzz.csv')])
+
+
 def night():
     return table(('step', 'what ran', 'minutes', 'commit', 'date', 'result'), [
         ('`%s`' % row['step'], *(str(row[key]) for key in ('counts', 'minutes', 'commit', 'date', 'result'))) for row in rows('night.csv')])
@@ -500,7 +505,7 @@ def photographs_of_many():
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, how_sure, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
-    step_by_step, mapped_index, scale_run, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, classic_detectors, learned_claim, learned_limit, estimator_limit, learned_guide, pose_pairs,
+    step_by_step, fuzzing, mapped_index, scale_run, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, classic_detectors, learned_claim, learned_limit, estimator_limit, learned_guide, pose_pairs,
     detected_points, uncertainty, night, artifacts)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
