@@ -272,6 +272,7 @@ Vec3d EpipolarProblem::planeOf(const RelativePose& pose, double scale) const
 std::vector<RelativePose> EpipolarProblem::rivals(const RelativePose& pose, double scale) const
 {
     const Matx33d homography = pose.R + pose.t * planeOf(pose, scale).t();
+    const double mostOff = .1;  // of a rotation's numbers: of an odd camera the decomposition gives others
     std::vector<Mat> rotations, translations, normals;
     std::vector<RelativePose> poses;
     if (!checkRange(homography))
@@ -280,8 +281,11 @@ std::vector<RelativePose> EpipolarProblem::rivals(const RelativePose& pose, doub
     for (size_t k = 0; k < rotations.size(); k++)
     {
         const Vec3d t(translations[k]);
-        const RelativePose other = {Matx33d(rotations[k]), t * (1 / (norm(t) + NOWHERE))};
-        if (norm(t) > 0 && areApart(pose, other) && areApart(pose, {other.R, -other.t}))
+        const Matx33d R(rotations[k]);
+        if (!(norm(R * R.t() - Matx33d::eye()) < mostOff && norm(t) > NOWHERE))
+            continue;
+        const RelativePose other = moved({R, t * (1 / norm(t))}, Step());  // exactly one
+        if (areApart(pose, other) && areApart(pose, {other.R, -other.t}))
             poses.push_back(other);
     }
     return poses;

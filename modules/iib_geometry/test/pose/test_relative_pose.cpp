@@ -291,6 +291,34 @@ TEST(RelativePose, degenerate_matches_end_without_nonsense)
         EXPECT_FALSE(reason.empty());
 }
 
+// Of homographies far from a rotation's scale OpenCV's decomposition gives matrices that are none.
+TEST(RelativePose, rivals_are_rotations_whatever_the_camera)
+{
+    const Matx33d camera(.001, 0, 320, 0, 500, 240, 0, 0, 1);
+    Mat first(12, 2, CV_64F), second(12, 2, CV_64F);
+    RNG random(3);
+    for (int i = 0; i < 12; i++)  // on a line
+    {
+        first.at<Point2d>(i) = Point2d(100 + 35 * i, 277 + 6 * i);
+        second.at<Point2d>(i) = first.at<Point2d>(i) + Point2d(random.gaussian(.3), random.gaussian(.3));
+    }
+    const EpipolarProblem problem(first, second, camera, camera);
+    int count = 0;
+    for (int trial = 0; trial < 200; trial++)
+    {
+        Vec<double, 5> step;
+        for (int k = 0; k < 5; k++)
+            step[k] = random.gaussian(trial < 100 ? 1 : 1e-5);
+        const RelativePose pose = moved(RelativePose{Matx33d::eye(), Vec3d(1, 0, 0)}, step);
+        for (const RelativePose& rival : problem.rivals(pose, 1))
+        {
+            EXPECT_LT(cv::norm(rival.R * rival.R.t(), Matx33d::eye()), 1e-9);
+            count++;
+        }
+    }
+    EXPECT_GT(count, 0);
+}
+
 TEST(RelativePose, mistakes_are_told)
 {
     const Mat points(10, 2, CV_32F, Scalar(1)), camera(CAMERA);
