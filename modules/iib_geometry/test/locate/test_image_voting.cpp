@@ -55,6 +55,25 @@ TEST(ImageVoting, looks_at_no_more_codes_of_ten_thousand_images)
     EXPECT_EQ(50, std::max_element(many.ofImages.begin(), many.ofImages.end()) - many.ofImages.begin());
 }
 
+TEST(ImageVoting, images_share_the_vote_of_a_key_and_what_is_frequent_has_none)
+{
+    const int tables = 16, strongest = 400;
+    const cv::Mat code(1, 64, CV_8U, cv::Scalar(7)), other(1, 64, CV_8U, cv::Scalar(255));
+    const auto votesOf = [](const std::vector<cv::Mat>& images, const cv::Mat& query) {
+        return ImageVoting(images).vote(query);
+    };
+    const ImageVoting::Votes votes = votesOf({cv::repeat(code, 9, 1), code}, code);
+    EXPECT_EQ(10u * tables, votes.visited);
+    EXPECT_NEAR(.9 * tables, votes.ofImages[0], 1e-4);
+    EXPECT_NEAR(.1 * tables, votes.ofImages[1], 1e-4);
+    EXPECT_EQ(0u, votesOf({cv::repeat(code, 100, 1)}, code).visited);
+    cv::Mat many = cv::repeat(code, strongest + 10, 1), finer = code.clone();
+    many.rowRange(strongest, many.rows) = cv::Scalar(255);
+    EXPECT_EQ(0u, votesOf({many}, other).visited) << "the weakest take no part";
+    finer.colRange(16, 64) = cv::Scalar(200);
+    EXPECT_EQ(1u * tables, votesOf({code}, finer).visited) << "finer levels have no part in keys";
+}
+
 TEST(ImageVoting, without_codes_there_are_no_votes)
 {
     const cv::Mat none, some(5, 64, CV_8U, cv::Scalar(1));

@@ -341,6 +341,33 @@ TEST(Smoothing, what_is_told_of_images_without_a_pose_holds)
     EXPECT_GT(sum, .2 * all) << "nor are they told to be less certain than they are";
 }
 
+// What a camera on the IMU tells does not depend on where on it the camera is.
+TEST(Smoothing, covariances_are_carried_from_the_camera_to_the_imu_and_back)
+{
+    const cv::Affine3d imuFromCamera(cv::Vec3d(.4, -.2, .3), cv::Vec3d(2, -1, 3));
+    const auto lever = [&](const cv::Affine3d& imu) { return imu.rotation() * imuFromCamera.translation(); };
+    Drive at = driveOf(14);
+    at.forgetMost();
+    Drive beside = at;
+    for (Location& image : beside.images)
+    {
+        const cv::Affine3d imu = image.cameraFromWorld.inv();
+        image.cameraFromWorld = (imu * imuFromCamera).inv();
+        image.covariance = carried(image.covariance, lever(imu));
+    }
+    const std::vector<Location> found = at.smoothed(readingsUntil(14)),
+                                moved = beside.smoothed(readingsUntil(14), imuFromCamera);
+    for (size_t i = 0; i < found.size(); i++)
+        if (!at.images[i].found)
+        {
+            const size_t last = i / 4 * 4;  // whose errors the images have in common
+            const cv::Matx66d expected =
+                    beside.images[last].covariance + carried(found[i].covariance - at.images[last].covariance,
+                                                             lever(found[i].cameraFromWorld.inv()));
+            EXPECT_LT(cv::norm(expected, moved[i].covariance), 1e-6 * cv::norm(expected)) << i;
+        }
+}
+
 TEST(Smoothing, covariances_that_are_none_change_nothing)
 {
     for (const double value : {0., double(NAN), -1., HUGE_VAL})

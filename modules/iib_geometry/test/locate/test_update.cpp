@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include <set>
+
 #include "../wall.hpp"
 
 namespace opencv_test {
@@ -43,17 +45,18 @@ TEST_F(Update, an_unknown_light_is_learnt)
     EXPECT_EQ(1u, update.cameras().size());
     for (size_t i = 0; i < poses.size(); i++)
         EXPECT_TRUE(update.add("dusk/" + std::to_string(i) + ".png", relit(poses[i], 9), CAMERA).found);
+    EXPECT_TRUE(update.add("dusk/0 again.png", relit(poses[0], 9), CAMERA).found);
     EXPECT_FALSE(update.add("elsewhere", Wall(5).image(truth), CAMERA).found);
     EXPECT_EQ("an image of the name 'elsewhere' is a part of the update already",
             messageOf([&] { update.add("elsewhere", Wall(5).image(truth), CAMERA); }));
     const MapUpdate::Counts counts = update.commit();
-    EXPECT_EQ(4, counts.localized);
-    EXPECT_EQ(4, counts.added);
+    EXPECT_EQ(5, counts.localized);
+    EXPECT_EQ(4, counts.added) << "one at each place";
     EXPECT_EQ(0, counts.dropped);
     EXPECT_EQ(6u, readMap(name).images.size()) << "the old map stays";
     const Map learnt = readMap(out);
     ASSERT_EQ(10u, learnt.images.size());
-    EXPECT_EQ("updates/1/dusk/0.png", learnt.images[6].name);
+    EXPECT_EQ("updates/1/dusk/0 again.png", learnt.images[6].name);
     EXPECT_EQ(1u, learnt.updates);
     const Location location = Localizer(out).localize(relit(truth, 9), CAMERA);
     ASSERT_TRUE(location.found);
@@ -107,15 +110,20 @@ TEST_F(Update, keeps_eight_lights_of_a_place_and_the_models_own_images)
     {
         MapUpdate update(name);
         ASSERT_TRUE(update.add("light", relit(truth, 20 + i), CAMERA).found);
+        ASSERT_TRUE(update.add("the first light", relit(truth, 20), CAMERA).found);
         update.commit();
     }
     const Map learnt = readMap(name);
     size_t added = 0, own = 0;
+    std::set<std::string> names;
     for (const MapImage& image : learnt.images)
     {
         added += image.added;
         own += !image.added;
+        names.insert(image.name);
     }
+    EXPECT_EQ(1u, names.count("updates/updates/1/light")) << "helps each time";
+    EXPECT_EQ(1u, names.count("updates/10/light")) << "is new";
     EXPECT_EQ(6u, own);
     EXPECT_LE(added, 8u);
     EXPECT_GE(added, 6u);

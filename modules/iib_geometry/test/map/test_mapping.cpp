@@ -427,5 +427,17 @@ TEST_F(Mapping, a_model_of_others)
     EXPECT_NE(std::string::npos, error(model(1, 2)).find("is this the model of these images?"));
 }
 
+TEST_F(Mapping, a_model_is_read_as_it_was_written)
+{
+    const PosedImage image = {"one", CAMERA, poseAt(.1, .2, .3), {{10.25, 20.5}, {3, 4}, {7, 8}}, {0, -1, 1}};
+    folder.makeFolder("model");
+    writeModel(folder.path("model"), {image}, {{1, 2, 3}, {4, 5, 6}});
+    const std::vector<PosedImage> again = readModel(folder.path("model"));
+    ASSERT_EQ(1u, again.size());
+    EXPECT_EQ(image.pixels, again[0].pixels);
+    EXPECT_EQ(image.sees, again[0].sees);
+    EXPECT_LT(cv::norm(image.cameraFromWorld.matrix, again[0].cameraFromWorld.matrix), 1e-12);
+}
+
 }  // namespace
 }  // namespace opencv_test

@@ -67,6 +67,9 @@ TEST(Alignment, finds_large_and_blurred_images)
     ASSERT_TRUE(alignImages(large, blurred, transform, ALIGN_SIMILARITY, error));
     EXPECT_NEAR(40, transform.at<double>(0, 2), 6);
     EXPECT_NEAR(60, transform.at<double>(1, 2), 6);
+    warpPerspective(large, blurred, Matx33d(1, 0, 0, 0, 1, 0, 2e-5, 1e-5, 1), large.size(), INTER_LINEAR);
+    ASSERT_TRUE(alignImages(large, blurred, transform, ALIGN_HOMOGRAPHY));
+    EXPECT_NEAR(1, transform.at<double>(2, 2), 1e-12);
 }
 
 TEST(Alignment, finds_large_images_that_are_turned_sharp_or_blurred)
@@ -94,6 +97,9 @@ TEST(Alignment, keeps_the_scales_of_images_of_other_sizes)
     resize(picture(21), strip, Size(7000, 100), 0, 0, INTER_CUBIC);
     ASSERT_TRUE(alignImages(strip, strip.colRange(500, 6500), transform, ALIGN_TRANSLATION));
     EXPECT_NEAR(500, transform.at<double>(0, 2), 2);
+    resize(picture(20), large, Size(3300, 2475), 0, 0, INTER_CUBIC);
+    ASSERT_TRUE(alignImages(large, picture(20), transform, ALIGN_SIMILARITY));
+    EXPECT_NEAR(8.25, transform.at<double>(0, 0), .02);
     EXPECT_THROW(alignImages(Mat(1100, 1100, CV_32S), large, transform), cv::Exception);
 }
 

@@ -291,6 +291,18 @@ TEST(RelativePose, degenerate_matches_end_without_nonsense)
         EXPECT_FALSE(reason.empty());
 }
 
+// Angles of a rotation, and that between directions, also large ones.
+TEST(RelativePose, steps_lead_to_other_poses)
+{
+    const RelativePose pose = {Matx33d::eye(), Vec3d(1, 0, 0)};
+    const Vec3d turn(.5, -.8, 1.1);
+    const RelativePose turned = moved(pose, Vec<double, 5>(turn[0], turn[1], turn[2], 0, 0)),
+                       other = {Matx33d::eye(), Vec3d(std::cos(2.), std::sin(2.), 0)};
+    EXPECT_LT(cv::norm(turned.R, Affine3d(turn).rotation()), 1e-12);
+    EXPECT_LT(cv::norm(Vec3d(stepBetween(pose, turned).val), turn), 1e-12);
+    EXPECT_NEAR(2, cv::norm(stepBetween(pose, other)), 1e-12);
+}
+
 // Of homographies far from a rotation's scale OpenCV's decomposition gives matrices that are none.
 TEST(RelativePose, rivals_are_rotations_whatever_the_camera)
 {
@@ -332,6 +344,8 @@ TEST(RelativePose, mistakes_are_told)
     EXPECT_THROW(findRelativePose(points, broken, camera, camera, R, t), cv::Exception);
     EXPECT_THROW(findRelativePose(points, Mat(10, 2, CV_64F, Scalar(DBL_MAX)), camera, camera, R, t),
             cv::Exception);
+    EXPECT_THROW(
+            findRelativePose(points, Mat(10, 2, CV_64F, Scalar(1e10)), camera, camera, R, t), cv::Exception);
     EXPECT_THROW(findRelativePose(points, points, skewed, camera, R, t), cv::Exception);
     EXPECT_THROW(findRelativePose(points, points, camera, flat, R, t), cv::Exception);
     EXPECT_THROW(findRelativePose(points, points, camera, Mat(), R, t), cv::Exception);

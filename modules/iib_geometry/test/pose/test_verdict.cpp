@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
+#include "pose/points.hpp"
 #include "pose/verdict.hpp"
 #include "two_cameras.hpp"
 
@@ -152,6 +153,15 @@ TEST(Verdict, wide_scales_make_no_pose_of_wrong_matches)
 }
 
 // Who tries ten limits finds ten times as many false alarms.
+TEST(Verdict, the_span_of_points_is_without_the_outermost)
+{
+    Mat points(100, 2, CV_64F);
+    for (int i = 0; i < points.rows; i++)
+        points.at<Point2d>(i) = Point2d(i, i == 50 ? 1e6 : i);
+    EXPECT_LT(spanOf(points).height, 100);
+    EXPECT_GT(spanOf(points).width, 90);
+}
+
 TEST(Verdict, limits_that_are_tried_count)
 {
     RNG random(21);
