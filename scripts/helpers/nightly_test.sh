@@ -14,7 +14,10 @@ mkdir -p "$work/programs" "$work/tree/.ci" "$work/tree/scripts/helpers" "$work/t
 printf '#!/bin/sh\nprintf installed\n' >"$work/programs/dpkg-query"  # nothing is to be installed
 printf '#!/bin/sh\nexit 0\n' >"$work/programs/apt-get"
 cp "$root/.ci/nightly" "$work/tree/.ci"
+printf '#!/bin/sh\nexit 0\n' >"$work/tree/scripts/fuzz.sh"
 cd "$work/tree"
+unset GIT_DIR GIT_WORK_TREE GIT_INDEX_FILE
+export GIT_CONFIG_GLOBAL=/dev/null  # which may ask for a key
 cp "$root/scripts/helpers/lib.sh" scripts/helpers
 cat >scripts/helpers/macos.sh <<'EOF2'
 #!/bin/sh
@@ -68,8 +71,16 @@ night() {
 }
 night 18
 expect "a whole night is one" .ci/nightly table >"$work/out" 2>&1
+git add .
+git -c user.name=test -c user.email=test commit -q -m "The table"
+expect "its table changes no code" .ci/nightly table >"$work/out" 2>&1
 night 19
 ! .ci/nightly table >"$work/out" 2>&1 || expect "more than six hours are no night" false
 night 1
-sed -i "s/^bits,$commit/bits,0000000/" "$rows"
+sed -i "s/^bits,$commit/bits,$(git rev-parse --short HEAD)/" "$rows"
 ! .ci/nightly table >"$work/out" 2>&1 || expect "two commits are no night" false
+git checkout -q .
+echo "exit 0" >>scripts/fuzz.sh
+git -c user.name=test -c user.email=test commit -q -a -m "Other code"
+! .ci/nightly table >"$work/out" 2>&1 || expect "a night of other code is none" false
+expect "what was run on other code is told" grep -qx "tests was run on other code, of $commit" "$work/out"
