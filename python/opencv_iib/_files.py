@@ -144,7 +144,7 @@ def only_writer(path: str, is_folder: bool = False) -> Iterator[None]:
     """Locks a folder that is there, or a file, which is made if it is missing, and removed if nothing came of it.
 
     :raises FileExistsError: for a link, which could lead to files of others, and for a folder in a file's place.
-    :raises BlockingIOError: if another process has it locked.
+    :raises BlockingIOError: if another process has it locked, or has removed the folder.
     """
     if os.path.islink(path) or (os.path.isdir(path) and not is_folder):
         raise FileExistsError(f'{path} is a {"link" if os.path.islink(path) else "folder"}: remove it, or choose another name')

@@ -136,6 +136,8 @@ def name(line):
 def untold(before, after):
     """What a page promised, another does not, and the newest section of the changelog does not tell where it should."""
     newest = re.split(r'^## ', (ROOT / 'CHANGELOG.md').read_text(), flags=re.MULTILINE)[1]
+    if newest.split()[0] == last_tag()[1:]:
+        newest = ''  # the next one's does not stand yet
     breaking = re.search(r'^### Backward incompatible\n(.*?)(^### |\Z)', newest, re.MULTILINE | re.DOTALL)
 
     def told(text, *words):
@@ -159,15 +161,22 @@ def untold(before, after):
     return gone
 
 
+def git(*arguments):
+    """What git says, nothing where it cannot."""
+    try:
+        return subprocess.run(['git', '-C', str(ROOT), *arguments], capture_output=True, text=True, check=True).stdout
+    except (OSError, subprocess.CalledProcessError):
+        return ''
+
+
+def last_tag():
+    return git('describe', '--tags', '--abbrev=0', '--match', 'v*').strip()
+
+
 def released(path):
     """The page of the last release."""
-    def git(*arguments):
-        try:
-            return subprocess.run(['git', '-C', str(ROOT), *arguments], capture_output=True, text=True, check=True).stdout
-        except (OSError, subprocess.CalledProcessError):
-            return ''
-    tag, file = git('describe', '--tags', '--abbrev=0', '--match', 'v*').strip(), ':./' + path.relative_to(ROOT).as_posix()
-    return tag and git('show', tag + file) or git('show', 'HEAD' + file) or path.read_text() if path.exists() else ''
+    tag, file = last_tag(), ':./' + path.relative_to(ROOT).as_posix()
+    return tag and git('show', tag + file) or git('show', 'HEAD' + file) or (path.read_text() if path.exists() else '')
 
 
 def main(description, path, after):

@@ -5,6 +5,7 @@
 import pathlib
 import tempfile
 import unittest
+import unittest.mock
 
 import cpp_api
 
@@ -129,6 +130,12 @@ class Test(unittest.TestCase):
         self.assertEqual(['bool find(int a, double scale = .25);'], self.untold(CHANGELOG % ('', '- scale of find'), change))
         for told in (CHANGELOG % ('- `find`', ''), CHANGELOG % ('', '- `find`: `scale`')):
             self.assertEqual([], self.untold(told, change))
+
+    def test_a_released_section_tells_nothing_of_what_came_after(self):
+        section = (CHANGELOG % ('- `find`', '')).replace('Unreleased', '0.3.0 (2026-01-01)')
+        for tag, gone in ('v0.2.0', []), ('v0.3.0', ['bool find(int a, double scale = .25);']):
+            with unittest.mock.patch.object(cpp_api, 'last_tag', return_value=tag):
+                self.assertEqual(gone, self.untold(section, ('double scale = .25', 'double scale = 0')))
 
     def test_additions_need_no_word(self):
         added = ('FAST = 1', 'FAST = 1, FASTEST'), ('class B', 'void more();\nclass B'), ('May change: news', 'Stable: news')

@@ -61,7 +61,7 @@ def declarations(name, value):
             owner = next(base for base in value.__mro__ if member in vars(base))
             if member.startswith('_') or not owner.__module__.startswith('opencv_iib'):
                 continue
-            if isinstance(found, property):
+            if isinstance(found, property) or not callable(getattr(value, member)):
                 yield 1, member
             elif callable(getattr(value, member)) and type(found).__name__ not in ('nb_method', 'nb_func'):  # those are undocumented
                 yield 1, member + arguments(getattr(value, member))

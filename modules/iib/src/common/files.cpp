@@ -290,23 +290,31 @@ FileLock::FileLock(const String& name, What what)
     const bool waits = what == LOCK_FILE;
     const int flags = O_CLOEXEC | (waits ? 0 : O_NOFOLLOW) |
                       (what == OUTPUT_FOLDER ? O_RDONLY | O_DIRECTORY : O_RDWR | O_CREAT);
-    bool other = true;  // whether another process has it, or had it when it was opened
-    while (other)
+    // Again where another process removed the file after it was opened here, and only then unlocked it.
+    for (int times = 0; times < 100; times++)
     {
         file = ::open(name.c_str(), flags, 0666);
+        if (file < 0 && errno == ENOENT && what == OUTPUT_FOLDER)
+            CV_Error(Error::StsError, "Another process has removed " + name + " meanwhile: try again");
         int result = -1;
         while (file >= 0 && (result = flock(file, waits ? LOCK_EX : LOCK_EX | LOCK_NB)) != 0 &&
                 errno == EINTR)
             continue;
-        other = result == 0 || (file >= 0 && errno == EWOULDBLOCK);
+        bool held = file >= 0 && result != 0 && errno == EWOULDBLOCK;
         struct stat there, locked;
-        if (result == 0 && fstat(file, &locked) == 0 && stat(name.c_str(), &there) == 0 &&
-                locked.st_dev == there.st_dev && locked.st_ino == there.st_ino)
-            return;  // else another process has removed it, and only then unlocked it
+        if (result == 0 && fstat(file, &locked) == 0)
+        {
+            const bool found = stat(name.c_str(), &there) == 0;
+            if (found && locked.st_dev == there.st_dev && locked.st_ino == there.st_ino)
+                return;
+            held = found || errno == ENOENT;
+        }
         if (file >= 0)
             close(file);
-        if (other && !waits)
+        if (held && !waits)
             CV_Error(Error::StsError, name + " is being written by another process: wait until it has ended");
+        if (!held)
+            break;
     }
     CV_Error(Error::StsError, "Cannot write " + name + ": check the folder and its rights");
 }
