@@ -85,8 +85,8 @@ bool fits(const Mat& mask, const Mat& image)
     return mask.empty() || (mask.type() == CV_8U && mask.size() == image.size());
 }
 
-void checkAnswer(const Mat& reference, const Mat& mask, const Mat& image, int model, const Mat& found,
-        const Mat& error, const Mat& matches)
+void checkAnswer(const Mat& reference, const Mat& mask, const Mat& image, const Mat& other, int model,
+        const Mat& found, const Mat& error, const Mat& matches)
 {
     FUZZ_CHECK(found.size() == Size(3, 3) && found.type() == CV_64F && checkRange(found));
     FUZZ_CHECK(error.size() == Size(1, 4) && error.type() == CV_64F && checkRange(error));
@@ -108,6 +108,8 @@ void checkAnswer(const Mat& reference, const Mat& mask, const Mat& image, int mo
         FUZZ_CHECK(Rect(Point(), reference.size()).contains(first) &&
                    there.contains(Point2f(match[2], match[3])));
         FUZZ_CHECK(mask.empty() || mask.at<uchar>(first) != 0);
+        const Rect around(Point((int)match[2] - 4, (int)match[3] - 4), Size(9, 9));  // refinement moves it
+        FUZZ_CHECK(other.empty() || countNonZero(other(around & Rect(Point(), other.size()))) > 0);
     }
 }
 
@@ -134,7 +136,7 @@ void run(ByteSource& in)
                    (matches.empty() || (matches.cols == 4 && matches.type() == CV_32F)));
         FUZZ_CHECK(aligned || (found.empty() && error.empty()));
         if (aligned)
-            checkAnswer(reference, mask, image, model, found, error, matches);
+            checkAnswer(reference, mask, image, other, model, found, error, matches);
         if (mask.empty() && other.empty() && in.rarely(8))
         {
             FUZZ_CHECK(alignImages(reference, image, again, model) == aligned);

@@ -9,10 +9,10 @@
 . "$(dirname "$0")/helpers/lib.sh"
 
 corpus="$cache/fuzz" counts="$cache/fuzz/executions" table="$root/doc/results/fuzz.csv"
-mkdir -p "$corpus"
 
 # document: the table with the runs in $counts, TARGET,KIND,EXECUTIONS,DATE each, which are then forgotten.
 document() {
+    mkdir -p "$corpus"
     touch "$counts"
     mv "$counts" "$counts.new"
     awk -F, '
@@ -80,14 +80,14 @@ cmake --build "$build" --target $(printf 'iib_fuzz_%s ' "$@")
 export ASAN_OPTIONS="malloc_context_size=0:quarantine_size_mb=4:${ASAN_OPTIONS:-}"
 [ -d /dev/shm ] && export OPENCV_TEMP_PATH=/dev/shm
 failures="$root/build-fuzz/failures"
-mkdir -p "$failures"
+mkdir -p "$failures" "$corpus"
 
-# run TARGET OPTION...: on its inputs, as a child that goes when this process is ended.
+# run TARGET OPTION... FOLDER...: as a child that goes when this process is ended.
 run() {
     target=$1
     shift
     "$build/fuzz/iib_fuzz_$target" "$@" -entropic=0 -detect_leaks=0 -timeout=60 -rss_limit_mb=4096 -max_len=$longest \
-        -artifact_prefix="$failures/$target-" "$corpus/$target" "$root/fuzz/corpus/$target" >>"$build/$target.log" 2>&1 &
+        -artifact_prefix="$failures/$target-" >>"$build/$target.log" 2>&1 &
     child=$!
     trap 'kill $child; exit 1' TERM
     wait $child
@@ -95,9 +95,9 @@ run() {
 
 # replay TARGET: its inputs with the kernels of each instruction set.
 replay() {
-    for off in "" AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL; do
+    for off in AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL ""; do
         export OPENCV_CPU_DISABLE=$off
-        run "$1" -runs=0 || return 1
+        run "$1" -runs=0 "$corpus/$1" "$root/fuzz/corpus/$1" || return 1
     done
 }
 
@@ -105,13 +105,13 @@ replay() {
 fuzz() {
     mkdir -p "$corpus/$1"
     : >"$build/$1.log"
-    if run "$1" -max_total_time="$seconds" -print_final_stats=1 && { [ -n "$plain" ] || replay "$1"; }; then
+    if run "$1" -max_total_time="$seconds" -print_final_stats=1 "$corpus/$1" "$root/fuzz/corpus/$1" &&
+        { [ -n "$plain" ] || replay "$1"; } &&
+        # Into the first folder; the lines that are reached count, not how often.
+        { [ -z "$keep" ] || run "$1" -merge=1 -use_counters=0 "$root/fuzz/corpus/$1" "$corpus/$1"; }; then
         executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$1.log" | head -n 1)
         echo "$1: $executions executions, $(ls "$corpus/$1" | wc -l) inputs kept"
         echo "$1,$kind,$executions,$(date +%F)" >>"$counts"
-        # Into the first folder; the lines that are reached count, not how often.
-        [ -z "$keep" ] || "$build/fuzz/iib_fuzz_$1" -merge=1 -use_counters=0 -max_len=$longest "$root/fuzz/corpus/$1" \
-            "$corpus/$1" >>"$build/$1.log" 2>&1
         touch "$build/$1.passed"
     else
         tail -n 30 "$build/$1.log" | sed "s/^/$1: /"  # others write meanwhile

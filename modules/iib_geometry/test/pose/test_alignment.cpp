@@ -179,6 +179,13 @@ TEST(Alignment, looks_at_what_masks_allow_in_images_that_are_turned)
     ASSERT_TRUE(aligner->align(image, transform, noArray(), matches));
     for (int i = 0; i < matches.rows; i++)
         ASSERT_GE(matches.at<float>(i, 0), 199.f);
+
+    Mat other(image.size(), CV_8U, Scalar(0));
+    other.rowRange(200, 400) = 1;
+    ASSERT_TRUE(ImageAligner::create(reference, ALIGN_SIMILARITY)
+                        ->align(image, transform, noArray(), matches, nullptr, other));
+    for (int i = 0; i < matches.rows; i++)  // refinement moves them
+        ASSERT_TRUE(matches.at<float>(i, 3) > 196 && matches.at<float>(i, 3) < 403);
 }
 
 //! As large as it says, on average over many noisy sets of matches.
