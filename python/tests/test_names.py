@@ -5,6 +5,7 @@ import operator
 import pathlib
 import pkgutil
 import pydoc
+import re
 import subprocess
 import sys
 import traceback
@@ -92,8 +93,9 @@ class Names(unittest.TestCase):
                         self.assertTrue(inspect.signature(method))
                         self.assertIn('return', typing.get_type_hints(method))
         shown = pydoc.plain(pydoc.render_doc(opencv_iib.HessianDetector))
+        shown = re.sub(r'[\s|]+', ' ', shown).replace('( ', '(')  # Python 3.13 breaks long lines
         self.assertRegex(shown, r"HessianDetector\(maxFeatures: '?int'? = 1000, threshold: '?float'? = 0.0, scales: '?int'? = 5, sigma: '?float'? = 2.2, ")
-        self.assertRegex(shown, r"setSigma\(self, sigma: '?float'?\) -> '?None'?\n \|  +Of the smallest scale in pixels, 1.5 to 8.\n")
+        self.assertRegex(shown, r"setSigma\(self, sigma: '?float'?\) -> '?None'? Of the smallest scale in pixels, 1.5 to 8\. ")
 
     def test_help_and_star_import_see_the_classes(self):
         names = {}

@@ -394,7 +394,7 @@ TEST(IIB_MatcherEdges, takes_views_and_gives_vectors)
     std::vector<Vec2i> pairs;
     std::vector<Vec2d> bits;
     matcher->knnMatchArrays(view.rowRange(0, 9), view, pairs, bits, 2);
-    EXPECT_EQ(0, cvtest::norm(expectedIndices.reshape(2), Mat(pairs), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(expectedIndices.reshape(2), Mat(pairs).reshape(2, 9), NORM_INF));
     EXPECT_EQ(expectedDistances.at<int>(8, 0), bits[8][0]);
     std::vector<int> nearest, distance;
     matcher->add(std::vector<Mat>(1, view));

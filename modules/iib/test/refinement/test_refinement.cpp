@@ -260,6 +260,7 @@ TEST(IIB_Refinement, right_starts_of_a_compressed_image)
 TEST(IIB_Refinement, gives_vectors_and_numbers_of_any_kind)
 {
     const Refined expected = refine(scene());
+    const int count = expected.points1.rows;  // of columns: OpenCV 5 makes a row of a vector
     const auto call = [](OutputArray a, OutputArray b, OutputArray c, OutputArray d) {
         refineMatches(scene().images[0], scene().keypoints[0], scene().images[1], scene().keypoints[1],
                 scene().matches, a, b, c, d);
@@ -268,10 +269,10 @@ TEST(IIB_Refinement, gives_vectors_and_numbers_of_any_kind)
     std::vector<Vec3f> covariances;
     std::vector<float> similarities;
     call(points1, points2, covariances, similarities);
-    EXPECT_EQ(0, cvtest::norm(expected.points1.reshape(2), Mat(points1), NORM_INF));
-    EXPECT_EQ(0, cvtest::norm(expected.points2.reshape(2), Mat(points2), NORM_INF));
-    EXPECT_EQ(0, cvtest::norm(expected.covariances.reshape(3), Mat(covariances), NORM_INF));
-    EXPECT_EQ(0, cvtest::norm(expected.similarities, Mat(similarities), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(expected.points1.reshape(2), Mat(points1).reshape(2, count), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(expected.points2.reshape(2), Mat(points2).reshape(2, count), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(expected.covariances.reshape(3), Mat(covariances).reshape(3, count), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(expected.similarities, Mat(similarities).reshape(1, count), NORM_INF));
     std::vector<Point2d> doubles;
     Mat_<Vec3d> wide;
     UMat onDevice;

@@ -110,7 +110,7 @@ TEST(Alignment, gives_fixed_sizes)
     ASSERT_TRUE(alignImages(picture(9), inOtherLight(picture(9)), found, ALIGN_HOMOGRAPHY, noArray(), all));
     ASSERT_TRUE(
             alignImages(picture(9), inOtherLight(picture(9)), found, ALIGN_HOMOGRAPHY, noArray(), matches));
-    EXPECT_EQ(0, cvtest::norm(all, Mat(matches).reshape(1), NORM_INF));
+    EXPECT_EQ(0, cvtest::norm(all, Mat(matches).reshape(1, all.rows), NORM_INF));
     EXPECT_FALSE(alignImages(
             picture(9), Mat(SIZE, CV_8U, Scalar(90)), found, ALIGN_HOMOGRAPHY, noArray(), matches));
     EXPECT_TRUE(matches.empty());
