@@ -18,9 +18,19 @@ double square(double x) { return x * x; }
 const int CELLS = 32;      // of the diagonal of what the points span
 const double MODELS = 10;  // that a sample proposes, at most
 
+//! The natural logarithm of n!, to ten digits (Abramowitz and Stegun, 6.1.40). C's lgamma writes its sign where all threads do.
+double logFactorial(int n)
+{
+    double x = n + 1, below = 1;  // of the series, which is good from 10 on; and the factors that lead there
+    for (; x < 10; x++)
+        below *= x;
+    const double series = (1 / 12. - (1 / 360. - 1 / (1260 * x * x)) / (x * x)) / x;
+    return (x - .5) * std::log(x) - x + .5 * std::log(2 * CV_PI) + series - std::log(below);
+}
+
 double logBinomial(int n, int k)
 {
-    return (std::lgamma(n + 1.) - std::lgamma(k + 1.) - std::lgamma(n - k + 1.)) / std::log(10.);
+    return (logFactorial(n) - logFactorial(k) - logFactorial(n - k)) / std::log(10.);
 }
 
 //! Matches of which some agree with a fundamental matrix or a homography, as errorsOfWrongMatches() has them.
