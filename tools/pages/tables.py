@@ -11,6 +11,7 @@ import re
 import sys
 
 import summaries
+from releases import artifacts, fuzzing, night
 from summaries import table
 from timings import chains, describing, machine, matching, same_points, speed_claim, step_by_step
 
@@ -421,20 +422,6 @@ def uncertainty():
 def scale():
     """What scripts/helpers/scale.sh wrote."""
     return json.loads((RESULTS / 'scale.json').read_text())
-
-
-def fuzzing():
-    return table(('target', 'executions with sanitizers', 'without', 'inputs kept', 'since'), [
-        ('`%s`' % row['target'], *(format(int(row[key]), ',') for key in ('sanitized', 'plain')), str(row['kept']), row['since']) for row in rows('fuzz.csv')])
-
-
-def night():
-    return table(('step', 'what ran', 'minutes', 'commit', 'date', 'result'), [
-        ('`%s`' % row['step'], *(str(row[key]) for key in ('counts', 'minutes', 'commit', 'date', 'result'))) for row in rows('night.csv')])
-
-
-def artifacts():
-    return table(('file', 'MB', 'SHA-256'), [('`%s`' % row['file'], '%.2f' % (int(row['bytes']) / 1e6), '`%s`' % row['sha256']) for row in rows('artifacts.csv')])
 
 
 def by_two(one, two):
