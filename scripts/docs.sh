@@ -12,7 +12,7 @@ wheel="${1:-$root}"
 [ -e "$wheel" ] || fail "there is no wheel $wheel"
 case "$root" in *" "*) fail "Doxygen links no pages in a folder with a blank in its path: $root" ;; esac
 need doxygen python3 python3-venv python3-dev $build_packages
-version=$(sed -n 's/^project(opencv_iib VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
+version=$(project_version)
 rm -rf "$build/docs"
 pictures="$build/docs/pictures" environment="$build/docs/environment" library="$build/libopencv_iib_static.a"
 mkdir -p "$pictures"

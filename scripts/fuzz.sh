@@ -13,22 +13,24 @@ corpus="$cache/fuzz" counts="$cache/fuzz/executions" table="$root/doc/results/fu
 # document: the table with the runs in $counts, TARGET,KIND,EXECUTIONS,DATE each, which are then forgotten.
 document() {
     mkdir -p "$corpus"
-    touch "$counts"
-    mv "$counts" "$counts.new"
+    touch "$counts" "$counts.new"
+    cat "$counts" >>"$counts.new"  # after those of a run that failed
+    rm "$counts"
     awk -F, '
         NF == 5 && NR > 1 { sanitized[$1] = $2; plain[$1] = $3; since[$1] = $5 }
         NF == 4 && $2 == "plain" { plain[$1] += $3 }
         NF == 4 && $2 == "sanitized" { sanitized[$1] += $3 }
         NF == 4 && !($1 in since) { since[$1] = $4 }
         END { for (target in since) printf "%s %.0f %.0f %s\n", target, sanitized[target], plain[target], since[target] }
-        ' "$table" "$counts.new" | sort | {
+        ' "$table" "$counts.new" >"$counts.sum"  # where this fails nothing is forgotten
+    sort "$counts.sum" | {
         echo "target,sanitized,plain,kept,since"
         while read -r target sanitized plain since; do
             echo "$target,$sanitized,$plain,$(ls "$root/fuzz/corpus/$target" | wc -l),$since"
         done
     } >"$table.new"
     mv "$table.new" "$table"
-    rm "$counts.new"
+    rm "$counts.new" "$counts.sum"
 }
 
 plain="" keep="" seconds=60

@@ -28,7 +28,7 @@ sanitize() {
     sanitizers=$1
     shift
     export TSAN_OPTIONS="suppressions=$root/cmake/sanitizer/threads.supp"
-    # Instructions are no matter of threads, whose sanitizer takes ten times as long: no suite under a pin, named NAME [PIN].
+    # Instructions are no matter of threads, whose sanitizer takes long: no suite under a pin, named NAME [PIN].
     [ "$sanitizers" != thread ] || chosen="$chosen --exclude-regex \\["
     # Where each block of memory was allocated is not recorded, which took a third of the time: who looks at a report sets it.
     export ASAN_OPTIONS="malloc_context_size=0:${ASAN_OPTIONS:-}"

@@ -83,7 +83,7 @@ EOF
     cd "$root/python/tests"
     "$environment/bin/python" -m unittest discover
     say "README's Python program under qemu"
-    sed -n '/^```python$/,/^```$/{/^```/!p}' "$root/README.md" >"$environment/match_pair.py"
+    sed -n '/^```python$/,/^```$/{/^```/!p;/^```$/q}' "$root/README.md" >"$environment/match_pair.py"
     "$environment/bin/python" "$environment/match_pair.py" "$root/tools/synthetic/day.png" "$root/tools/synthetic/night.png"
     exit 0
 fi

@@ -14,7 +14,6 @@ mkdir -p "$work/programs" "$work/tree/.ci" "$work/tree/scripts/helpers" "$work/t
 printf '#!/bin/sh\nprintf installed\n' >"$work/programs/dpkg-query"  # nothing is to be installed
 printf '#!/bin/sh\nexit 0\n' >"$work/programs/apt-get"
 cp "$root/.ci/nightly" "$work/tree/.ci"
-printf '#!/bin/sh\nexit 0\n' >"$work/tree/scripts/fuzz.sh"
 cd "$work/tree"
 unset GIT_DIR GIT_WORK_TREE GIT_INDEX_FILE
 export GIT_CONFIG_GLOBAL=/dev/null  # which may ask for a key

@@ -10,7 +10,7 @@ def rows(name):
 
 def night():
     return table(('step', 'what ran', 'minutes', 'commit', 'date', 'result'), [
-        ('`%s`' % row['step'], *(str(row[key]) for key in ('counts', 'minutes', 'commit', 'date', 'result'))) for row in rows('night.csv')])
+        ('`%s`' % row['step'], *(row[key] for key in ('counts', 'minutes', 'commit', 'date', 'result'))) for row in rows('night.csv')])
 
 
 def artifacts():
@@ -19,4 +19,4 @@ def artifacts():
 
 def fuzzing():
     return table(('target', 'executions with sanitizers', 'without', 'inputs kept', 'since'), [
-        ('`%s`' % row['target'], *(format(int(row[key]), ',') for key in ('sanitized', 'plain')), str(row['kept']), row['since']) for row in rows('fuzz.csv')])
+        ('`%s`' % row['target'], *(format(int(row[key]), ',') for key in ('sanitized', 'plain')), row['kept'], row['since']) for row in rows('fuzz.csv')])

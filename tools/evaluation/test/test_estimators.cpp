@@ -156,7 +156,10 @@ TEST(Estimators, pairs_of_lists)
         // Of AKAZE's few matches OpenCV 4.10's MAGSAC errs by 13 degrees; a turn of another image by 80 and more.
         const bool few = CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR >= 10 &&
                          error.first.find("AKAZE plain MAGSAC") != std::string::npos;
-        EXPECT_LT(error.second, error.first.find("find") != std::string::npos ? 4 : few ? 20 : 10) << error.first;
+        EXPECT_LT(error.second, error.first.find("find") != std::string::npos ? 4
+                                : few                                         ? 20
+                                                                              : 10)
+                << error.first;
     }
     options.pairs.push_back(options.pairs.front());
     EXPECT_NE(std::string::npos,

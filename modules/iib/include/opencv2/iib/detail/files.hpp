@@ -84,7 +84,7 @@ public:
     enum What
     {
         LOCK_FILE,     //!< made for the lock if it is missing, and stays; its lock is waited for
-        OUTPUT_FILE,   //!< made if it is missing
+        OUTPUT_FILE,   //!< made if it is missing, but on Windows
         OUTPUT_FOLDER  //!< never made: another process may have removed it meanwhile
     };
     //! @throws cv::Exception if it cannot be locked.
