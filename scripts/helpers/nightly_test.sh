@@ -27,7 +27,7 @@ EOF2
 printf '#!/bin/sh\nprintf "one after the other..."\nexit 1\n' >scripts/helpers/package.sh  # its last line has no end
 printf '#!/bin/sh\n' >scripts/fuzz.sh  # has no executions to tell of
 chmod +x "$work/programs"/* scripts/fuzz.sh scripts/helpers/*
-echo "step,commit,date,minutes,counts,result" >doc/results/night.csv
+echo "step,commit,started,minutes,counts,result" >doc/results/night.csv
 git init -q .
 git add .
 git -c user.name=test -c user.email=test commit -q -m "Stand-ins"
@@ -49,8 +49,8 @@ expect() {
 code=0
 .ci/nightly --document macos package >"$work/out" 2>&1 || code=$?
 expect "a night with a step that fails ends with 1, not $code" [ $code = 1 ]
-expect "tests are counted, and what was skipped" grep -qx "macos,$commit,[-0-9]*,[01],7 tests (3 skipped),passed" "$rows"
-expect "what failed is told" grep -qx "package,$commit,[-0-9]*,[01],,failed" "$rows"
+expect "tests are counted, and what was skipped" grep -qx "macos,$commit,[-0-9]* [:0-9]*,[01],7 tests (3 skipped),passed" "$rows"
+expect "what failed is told" grep -qx "package,$commit,[-0-9]* [:0-9]*,[01],,failed" "$rows"
 expect "the tree stays as it was" [ -z "$(git status --porcelain)" ]
 echo >new.sh
 ! .ci/nightly --document macos >"$work/out" 2>&1 || expect "a new file is not committed" false
@@ -61,21 +61,26 @@ rm new.sh
 expect "a step that failed is told" grep -qx "package failed" "$work/out"
 expect "a step that was not run is told" grep -qx "tests was not run" "$work/out"
 expect "the table has what was run" grep -q "^macos,$commit,.*,passed$" doc/results/night.csv
-# night MINUTES: rows of a whole night.
+# night MINUTES APART: rows of a whole night, whose steps began so many minutes one after the other.
 steps=$(sed -n 's/^known="\(.*\)"$/\1/p' .ci/nightly)
 night() {
+    start=1767225600  # of 2026
     for step in $steps; do
-        echo "$step,$commit,2026-01-01,$1,1 tests,passed"
+        echo "$step,$commit,$(date -u -d "@$start" '+%F %H:%M'),$1,1 tests,passed"
+        start=$((start + 60 * $2))
     done >"$rows"
 }
-night 18
+night 18 18
 expect "a whole night is one" .ci/nightly table >"$work/out" 2>&1
 git add .
 git -c user.name=test -c user.email=test commit -q -m "The table"
 expect "its table changes no code" .ci/nightly table >"$work/out" 2>&1
-night 19
+night 19 19
 ! .ci/nightly table >"$work/out" 2>&1 || expect "more than six hours are no night" false
-night 1
+night 35 17
+expect "minutes of steps beside each other count once" .ci/nightly table >"$work/out" 2>&1
+expect "the time of the whole night is told" grep -qx "all,,,358,," doc/results/night.csv
+night 1 1
 sed -i "s/^bits,$commit/bits,$(git rev-parse --short HEAD)/" "$rows"
 ! .ci/nightly table >"$work/out" 2>&1 || expect "two commits are no night" false
 git checkout -q .

@@ -9,8 +9,8 @@ def rows(name):
 
 
 def night():
-    return table(('step', 'what ran', 'minutes', 'commit', 'date', 'result'), [
-        ('`%s`' % row['step'], *(row[key] for key in ('counts', 'minutes', 'commit', 'date', 'result'))) for row in rows('night.csv')])
+    return table(('step', 'what ran', 'minutes', 'commit', 'started (UTC)', 'result'), [
+        ('`%s`' % row['step'], *(row[key] for key in ('counts', 'minutes', 'commit', 'started', 'result'))) for row in rows('night.csv')])
 
 
 def artifacts():
