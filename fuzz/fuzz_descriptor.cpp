@@ -78,9 +78,10 @@ std::vector<KeyPoint> takeKeyPoints(ByteSource& in, Size size)
 bool areValid(const IIB& iib, const Mat& image, const std::vector<Mat>& extra,
         const std::vector<KeyPoint>& keypoints)
 {
+    const bool readsAngles = iib.getOrientation() == IIB::ORIENTATION_KEYPOINT;
     for (const KeyPoint& kp : keypoints)
-        if (!std::isfinite(kp.pt.x) || !std::isfinite(kp.pt.y) || !std::isfinite(kp.size) ||
-                !std::isfinite(kp.angle) || kp.size <= 0)
+        if (!std::isfinite(kp.pt.x) || !std::isfinite(kp.pt.y) || !std::isfinite(kp.size) || kp.size <= 0 ||
+                (readsAngles && !std::isfinite(kp.angle)))
             return false;
     if (image.empty())
         return true;
