@@ -290,7 +290,7 @@ FileLock::FileLock(const String& name, What what)
     const bool waits = what == LOCK_FILE;
     const int flags = O_CLOEXEC | (waits ? 0 : O_NOFOLLOW) |
                       (what == OUTPUT_FOLDER ? O_RDONLY | O_DIRECTORY : O_RDWR | O_CREAT);
-    // Again where another process removed the file after it was opened here, and only then unlocked it.
+    // Again where another process removed or replaced the file after it was opened here, and only then unlocked it.
     for (int times = 0; times < 100; times++)
     {
         file = ::open(name.c_str(), flags, 0666);
@@ -300,23 +300,24 @@ FileLock::FileLock(const String& name, What what)
         while (file >= 0 && (result = flock(file, waits ? LOCK_EX : LOCK_EX | LOCK_NB)) != 0 &&
                 errno == EINTR)
             continue;
-        bool held = file >= 0 && result != 0 && errno == EWOULDBLOCK;
+        const bool busy = file >= 0 && result != 0 && errno == EWOULDBLOCK;
+        bool gone = false;
         struct stat there, locked;
         if (result == 0 && fstat(file, &locked) == 0)
         {
             const bool found = stat(name.c_str(), &there) == 0;
             if (found && locked.st_dev == there.st_dev && locked.st_ino == there.st_ino)
                 return;
-            held = found || errno == ENOENT;
+            gone = found || errno == ENOENT;
         }
         if (file >= 0)
             close(file);
-        if (held && !waits)
+        if (busy)
             CV_Error(Error::StsError, name + " is being written by another process: wait until it has ended");
-        if (!held)
-            break;
+        if (!gone)
+            CV_Error(Error::StsError, "Cannot write " + name + ": check the folder and its rights");
     }
-    CV_Error(Error::StsError, "Cannot write " + name + ": check the folder and its rights");
+    CV_Error(Error::StsError, "Other processes replace " + name + " all the time: wait until they have ended");
 }
 
 FileLock::~FileLock()
