@@ -1,16 +1,22 @@
 #!/bin/sh
 # Learns a selection: scripts/train.sh --out=selection.yml FOLDER...; build/tools/training/iib_train --help lists the options.
-# With --presets first it trains the built-in presets on tilde_webcam and amos_daynight, which lie in
-# $OPENCV_TEST_DATA_PATH/illumination, and on the walks in FOLDER, which this renders:
+# With --presets or --presets=FILE first it trains the built-in presets, in their place or into FILE, on tilde_webcam and amos_daynight,
+# which lie in $OPENCV_TEST_DATA_PATH/illumination, and on the walks in FOLDER, which this renders:
 # scripts/helpers/synthetic.sh FOLDER --scenes room terrain --frames 20 --quick
 . "$(dirname "$0")/helpers/lib.sh"
 
-if [ "${1:-}" = --presets ]; then
+case "${1:-}" in
+--presets | --presets=?*)
+    presets=$1
+    [ "$1" != --presets ] || presets="--presets=$root/modules/iib/src/descriptor/presets.generated.hpp"
     shift
     data="${OPENCV_TEST_DATA_PATH:?the folder that holds illumination/}/illumination"
-    set -- --presets="$root/modules/iib/src/descriptor/presets.generated.hpp" "$@" "$data/tilde_webcam" \
-        "$data/amos_daynight"
-fi
+    for sequence in tilde_webcam amos_daynight; do
+        [ -d "$data/$sequence" ] || fail "the presets are learned from $data/$sequence, which is not there"
+    done
+    set -- "$presets" "$@" "$data/tilde_webcam" "$data/amos_daynight"
+    ;;
+esac
 check_options "$root/tools/training/train.cpp" "$@"
 [ "$operands" != 0 ] || fail "a FOLDER to train on is needed (--help tells more)"
 need $build_packages
