@@ -33,6 +33,11 @@ document() {
     rm "$counts.new" "$counts.sum"
 }
 
+if [ "${1:-}" = --document ]; then
+    [ $# = 1 ] || fail "--document stands alone: it fuzzes nothing"
+    document
+    exit 0
+fi
 plain="" keep="" seconds=60
 while true; do
     case "${1:-}" in
@@ -44,10 +49,6 @@ while true; do
         esac
         seconds=$2
         shift
-        ;;
-    --document)
-        document
-        exit 0
         ;;
     *) break ;;
     esac
