@@ -184,6 +184,25 @@ TEST_F(IIB_MappedIndex_Commits, a_lock_on_a_file_that_another_process_has_remove
     waiting.join();
 }
 
+// Between opening and locking it; nobody holds its lock.
+TEST_F(IIB_MappedIndex_Commits, an_output_that_another_process_replaces_is_not_in_use)
+{
+    const String name = folder.name + "/output", next = folder.name + "/next";
+    std::atomic<bool> done(false);
+    std::thread replacing([&] {
+        while (!done)
+        {
+            close(open(next.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0666));
+            EXPECT_EQ(0, std::rename(next.c_str(), name.c_str()));
+            usleep(100);  // or no lock would ever be in time
+        }
+    });
+    for (int times = 0; times < 5000; times++)
+        EXPECT_NO_THROW(FileLock(name, FileLock::OUTPUT_FILE));
+    done = true;
+    replacing.join();
+}
+
 TEST_F(IIB_MappedIndex_Commits, full_disk_keeps_the_last_commit)
 {
     for (rlim_t bytes : {50, 3000, 5000})

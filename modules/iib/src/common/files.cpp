@@ -317,7 +317,8 @@ FileLock::FileLock(const String& name, What what)
         if (!gone)
             CV_Error(Error::StsError, "Cannot write " + name + ": check the folder and its rights");
     }
-    CV_Error(Error::StsError, "Other processes replace " + name + " all the time: wait until they have ended");
+    CV_Error(
+            Error::StsError, "Other processes replace " + name + " all the time: wait until they have ended");
 }
 
 FileLock::~FileLock()
