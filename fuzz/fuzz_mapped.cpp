@@ -76,7 +76,7 @@ const int BLOCK_BYTES = 64, CODES_PER_BLOCK = 16;
 struct Written
 {
     bool mayBeRefused;  //!< they differ from what the library writes
-    bool filled;        //!< bits that belong to no code are set, which may count in distances
+    bool filled;        //!< bits that belong to no code may be set, and count in distances
 };
 
 Written write(ByteSource& in, const String& folder)
@@ -132,7 +132,8 @@ Written write(ByteSource& in, const String& folder)
         commit.number(i * 2, 8);
     commit.seal();
     opencv_test::writeFile(folder + "/manifest.iib", commit.whole());
-    return {codes.isAltered() || commit.isAltered() || 2 * (removed - 1) >= segments * images, filled};
+    return {codes.isAltered() || commit.isAltered() || 2 * (removed - 1) >= segments * images,
+            filled || codes.isAltered()};
 }
 
 //! Rows that a search finds are those of the images, and their distances those of the images' codes, unless these are filled.
