@@ -44,7 +44,7 @@ class Mutant:
             sys.exit(f"mutants.txt: '{line}' is not NAME: code {{{{right => wrong}}}} code")
         self.name, before, right, self.wrong, after = fields.groups()
         self.number, self.area = number, area
-        self.code = re.compile(r"\s*".join(f"({pattern(part)})" for part in (before, right, after)))
+        self.code = re.compile(r"(\s*)".join(f"({pattern(part)})" for part in (before, right, after)))
         found = [path for path, text in sources.items() for _ in self.code.finditer(text)]
         if len(found) != 1:
             sys.exit(f"{self.name}: its code is in the sources {len(found)} times: bring mutants.txt up to date")
@@ -53,7 +53,7 @@ class Mutant:
     def applied(self, text):
         """The source `text` with the switch around the right code."""
         text, count = self.code.subn(
-            lambda found: f"{found[1]} IIB_MUTANT({self.number}, {found[2]}, {self.wrong}) {found[3]}", text)
+            lambda found: f"{found[1]}{found[2]}IIB_MUTANT({self.number}, {found[3]}, {self.wrong}){found[4]}{found[5]}", text)
         if count != 1:
             sys.exit(f"{self.name}: another mutant changes the same code")
         return text
