@@ -38,7 +38,7 @@ void writePresets(const std::string& file, const TrainingSet& images, uint64 see
     for (const Recipe& recipe : presetRecipes())
         presets.push_back({recipe.name, train(recipe, images, seed, show(recipe.name))});
     std::ofstream(file) << presetsHeader(
-            presets, cv::format("scripts/train.sh --presets --seed=%d WALKS", int(seed)), images, seed);
+            presets, cv::format("scripts/train.sh --presets --seed=%d WALKS/path", int(seed)), images, seed);
 }
 
 Recipe recipeOf(const std::string& preset)

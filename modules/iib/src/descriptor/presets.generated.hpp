@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Generated, do not edit: scripts/train.sh --presets --seed=1 WALKS
+// Generated, do not edit: scripts/train.sh --presets --seed=1 WALKS/path
 // Seed 1, trained on:
 //   amos_daynight/cam00
 //   amos_daynight/cam01
