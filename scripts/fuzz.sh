@@ -96,19 +96,32 @@ run() {
     wait $child
 }
 
-# replay TARGET: its inputs with the kernels of each instruction set.
+# replay TARGET: its inputs with the kernels of each other instruction set.
 replay() {
-    for off in AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL ""; do
+    for off in AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL; do
         export OPENCV_CPU_DISABLE=$off
-        run "$1" -runs=0 "$corpus/$1" "$root/fuzz/corpus/$1" || return 1
+        run "$1" -runs=0 "$build/$1.corpus" "$root/fuzz/corpus/$1" || return 1
+    done
+    unset OPENCV_CPU_DISABLE
+}
+
+# sample TARGET: some of what was kept. A slow target would do nothing else in its time, were it to begin with all of it.
+sample() {
+    mkdir -p "$corpus/$1"
+    rm -rf "$build/$1.corpus"
+    mkdir "$build/$1.corpus"
+    ls "$corpus/$1" | shuf -n 200 | while read -r input; do
+        cp "$corpus/$1/$input" "$build/$1.corpus"
     done
 }
 
 # fuzz TARGET: leaves a file beside its log if nothing was found.
 fuzz() {
-    mkdir -p "$corpus/$1"
+    sample "$1"
     : >"$build/$1.log"
-    if run "$1" -max_total_time="$seconds" -print_final_stats=1 "$corpus/$1" "$root/fuzz/corpus/$1" &&
+    run "$1" -max_total_time="$seconds" -print_final_stats=1 "$build/$1.corpus" "$root/fuzz/corpus/$1" && found="" || found=yes
+    cp -R "$build/$1.corpus/." "$corpus/$1"
+    if [ -z "$found" ] &&
         { [ -n "$plain" ] || replay "$1"; } &&
         # Into the first folder; the lines that are reached count, not how often.
         { [ -z "$keep" ] || run "$1" -merge=1 -use_counters=0 "$root/fuzz/corpus/$1" "$corpus/$1"; }; then
