@@ -176,6 +176,15 @@ TEST_F(Lines, and_segments_match_where_they_overlap)
     EXPECT_TRUE(ends(line, {segment.begin + off, segment.end + off}).empty()) << "beside the line";
     EXPECT_TRUE(ends({{.5, .5, 8}, {.5, .5, 20}}, segment).empty()) << "beyond the segment";
     EXPECT_TRUE(ends({line.begin, {.5, .5, -1}}, segment).empty()) << "behind the camera";
+    const MapLine flat = {{-.5, .1, 4}, {.5, .3, 5}};
+    const auto seen = CAMERA.project({flat.begin, flat.end});
+    const std::vector<Match> exact = ends(flat, {seen[0], seen[1]});
+    ASSERT_EQ(2u, exact.size());
+    for (const Match& m : exact)
+    {
+        EXPECT_LT(cv::norm(m.errorProjection * (seen[1] - seen[0])), 1e-6) << "errors along it do not count";
+        EXPECT_NEAR(1, cv::trace(m.errorProjection), 1e-9) << "errors across it count";
+    }
 }
 
 typedef WallTest LinesOfMaps;

@@ -176,6 +176,14 @@ TEST(Verdict, limits_that_are_tried_count)
     EXPECT_EQ(1, best);
 }
 
+// The least that a thousand wrong matches tell, however narrow the limit is.
+TEST(Verdict, the_chance_of_what_no_wrong_match_does_is_that_of_one_more)
+{
+    RNG random(22);
+    const Verdict verdict(anywhere(random, 60, 640, 480), anywhere(random, 60, 640, 480));
+    EXPECT_NEAR(1 / 1001., verdict.chance(Verdict::FROM_POINT, .01, std::vector<double>(1000, 1e4)), 1e-12);
+}
+
 // Of many wrong matches in a place one agrees: right ones in a single place make no more of them.
 TEST(Verdict, a_place_of_many_matches_agrees_by_more_chance_than_a_match)
 {
