@@ -164,10 +164,10 @@ TEST(RelativePose, of_a_plane_is_right_or_refused)
         EXPECT_LE(poses.wrong, count == 200 ? 1 : 3) << count;  // told, as two poses that differ little
         EXPECT_EQ(0, poses.untold) << count;
     }
-    const OfPlane few(30, 30, 0);
-    EXPECT_GE(few.right, 12);
-    EXPECT_LE(few.wrong, 2);
-    EXPECT_EQ(0, few.untold);
+    const OfPlane few(60, 30, 0);
+    EXPECT_GE(few.right, 25);
+    EXPECT_LE(few.wrong, 3);
+    EXPECT_EQ(0, few.untold) << "the second pose was looked for";
 }
 
 TEST(RelativePose, of_points_about_a_plane_is_found)
