@@ -62,12 +62,12 @@ TEST(RelativePose, covariance_foretells_the_errors_of_few_matches)
         {
             SCOPED_TRACE(format("%d matches, noise %g", count, noise));
             RNG random(40);
-            const Coverage coverage(random, 100,
+            const Coverage coverage(random, count == 10 ? 400 : 100,
                     [&](const RelativePose& truth) { return Views(random, truth, count, 0, noise); });
             EXPECT_GE(coverage.found(), count == 10 ? .5 : .95);
             EXPECT_GE(coverage.within(MEDIAN), .5);
-            EXPECT_GE(coverage.within(OF_95), noise < 1 ? .87 : count == 10 ? .7 : .82);
-            EXPECT_GE(coverage.within(OF_99), noise < 1 ? .92 : count == 10 ? .76 : .87);
+            EXPECT_GE(coverage.within(OF_95), noise < 1 ? .93 : .9);
+            EXPECT_GE(coverage.within(OF_99), noise < 1 ? .94 : .92);
         }
 }
 

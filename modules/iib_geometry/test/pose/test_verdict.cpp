@@ -181,7 +181,9 @@ TEST(Verdict, the_chance_of_what_no_wrong_match_does_is_that_of_one_more)
 {
     RNG random(22);
     const Verdict verdict(anywhere(random, 60, 640, 480), anywhere(random, 60, 640, 480));
-    EXPECT_NEAR(1 / 1001., verdict.chance(Verdict::FROM_POINT, .01, std::vector<double>(1000, 1e4)), 1e-12);
+    const std::vector<double> wrong(1000, 1e4);
+    EXPECT_NEAR(1 / 1001., verdict.chance(Verdict::FROM_POINT, .01, wrong), 1e-12);
+    EXPECT_NEAR(2 * 800 / (640 * 480.), verdict.chance(Verdict::FROM_LINE, 1, wrong), .001) << "of any line";
 }
 
 // Of many wrong matches in a place one agrees: right ones in a single place make no more of them.
