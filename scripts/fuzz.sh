@@ -1,7 +1,7 @@
 #!/bin/sh
 # Fuzzes the library with clang's libFuzzer, address and undefined-behaviour sanitizers:
 # scripts/fuzz.sh [--plain] [--keep] [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each, one a core. What
-# is found on the way stays in the cache folder and makes the next run, of any checkout, start further on; an input that fails is
+# is found on the way stays in the cache folder, and 200 of it, chosen anew, begin the next run, of any checkout; an input that fails is
 # kept in build-fuzz/failures and belongs into fuzz/corpus, with a test, once the bug is fixed. --plain leaves the
 # sanitizers out and makes inputs smaller, so that many times as many are compared with the oracles; its corpus is the
 # same. --keep adds the smallest inputs to fuzz/corpus that reach code which none of its own does.
@@ -105,9 +105,15 @@ replay() {
     unset OPENCV_CPU_DISABLE
 }
 
+# save TARGET: what a run has found, also one that was interrupted.
+save() {
+    mkdir -p "$corpus/$1"
+    [ ! -d "$build/$1.corpus" ] || cp -R "$build/$1.corpus/." "$corpus/$1"
+}
+
 # sample TARGET: some of what was kept. A slow target would do nothing else in its time, were it to begin with all of it.
 sample() {
-    mkdir -p "$corpus/$1"
+    save "$1"
     rm -rf "$build/$1.corpus"
     mkdir "$build/$1.corpus"
     ls "$corpus/$1" | shuf -n 200 | while read -r input; do
@@ -120,7 +126,7 @@ fuzz() {
     sample "$1"
     : >"$build/$1.log"
     run "$1" -max_total_time="$seconds" -print_final_stats=1 "$build/$1.corpus" "$root/fuzz/corpus/$1" && found="" || found=yes
-    cp -R "$build/$1.corpus/." "$corpus/$1"
+    save "$1"
     if [ -z "$found" ] &&
         { [ -n "$plain" ] || replay "$1"; } &&
         # Into the first folder; the lines that are reached count, not how often.
