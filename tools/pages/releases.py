@@ -1,11 +1,6 @@
 """Tables of what a release goes by, of the results in doc/results: the steps of the night, what was fuzzed, the files that were built."""
-import summaries
 from summaries import table
-from timings import RESULTS
-
-
-def rows(name):
-    return summaries.read(RESULTS / name)
+from timings import rows
 
 
 def night():

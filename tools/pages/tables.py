@@ -13,17 +13,12 @@ import sys
 import summaries
 from releases import artifacts, fuzzing, night
 from summaries import table
-from timings import chains, describing, machine, matching, same_points, speed_claim, step_by_step
+from timings import RESULTS, chains, describing, machine, matching, rows, same_points, speed_claim, step_by_step
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-RESULTS = ROOT / 'doc/results'
 PAPER = summaries.read(HERE / 'paper.csv')  # the paper's figures, by the questions of its tables and our names
 LOCALIZATION = summaries.read(HERE / 'paper_localization.csv')
-
-
-def rows(name):
-    return summaries.read(RESULTS / name)
 
 
 def precision_recall(row):

@@ -13,6 +13,10 @@ from summaries import by, read, table
 RESULTS = pathlib.Path(__file__).resolve().parents[2] / 'doc/results'
 
 
+def rows(name):
+    return read(RESULTS / name)
+
+
 @functools.lru_cache(None)
 def speed():
     """What scripts/bench.sh measured: points and milliseconds by test and parameters, a column an instruction set, the widest first."""

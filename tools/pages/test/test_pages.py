@@ -13,6 +13,7 @@ import localization  # noqa: E402
 import speed  # noqa: E402
 import summaries  # noqa: E402
 import tables  # noqa: E402
+import timings  # noqa: E402
 
 
 class Figures(unittest.TestCase):
@@ -126,7 +127,7 @@ class Figures(unittest.TestCase):
                 ['3', '2', '8', '0', '0', '0.25', '0.5', '0.75', '1', '1'], ['1', '0', '0'] + 7 * [''],
                 ['2', '1', '1', '0', '0', '1', '1', '1', '1', '1'], ['2', '1', '1'] + 7 * ['0']])
             self.assertEqual(2, target.read_text().count('rendered places, by night'))
-            with unittest.mock.patch.object(tables, 'RESULTS', pathlib.Path(folder)):
+            with unittest.mock.patch.object(timings, 'RESULTS', pathlib.Path(folder)):
                 target.replace(source)
                 self.assertIn('| 3 | 2 | 8 | 25 | 100 | 100 |', tables.uncertainty())
                 self.assertIn('| 1 | 0 | 0 | – | – | – |', tables.uncertainty())
