@@ -24,7 +24,15 @@ def fetch(major, tree):
                         'opencv-contrib-python>=%d,<%d' % (major, major + 1)], check=True, stdout=sys.stderr)
         with tarfile.open(glob.glob(work + '/*.tar.gz')[0]) as packed:
             packed.extractall(work + '/tree')
-        os.rename(glob.glob(work + '/tree/*')[0], tree)
+        try:
+            os.rename(glob.glob(work + '/tree/*')[0], tree)
+        except OSError:
+            if not complete(tree):  # else another process has brought it meanwhile
+                raise
+
+
+def complete(tree):
+    return os.path.exists(tree + '/opencv/CMakeLists.txt')
 
 
 if sys.argv[2:] or sys.argv[1:] not in ([], ['4'], ['5']):
@@ -33,6 +41,6 @@ chosen = int((sys.argv[1:] or ['4'])[0])
 cache = os.environ.get('XDG_CACHE_HOME') or os.path.expanduser('~/.cache')
 folder = os.path.join(cache, 'opencv_iib', 'opencv-contrib-%d' % chosen)
 os.makedirs(os.path.dirname(folder), exist_ok=True)
-if not os.path.exists(folder + '/opencv/CMakeLists.txt'):
+if not complete(folder):
     fetch(chosen, folder)
 print(folder)
