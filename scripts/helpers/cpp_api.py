@@ -3,8 +3,8 @@
 
 """Writes doc/api.md, the public names of the headers. What changed or went since the last release, of which header, class and
 line, has its own name and its class's as `code` in one item of CHANGELOG.md's newest section, under "Backward incompatible" if it
-was stable; changed bases of a class, and headers whose promise changed, have theirs. Before the first release's tag, and without
-git, that is since the last commit, or since the page was written.
+was stable; changed bases of a class, and headers whose promise changed, have theirs. A release is a tag; before the first one, the last
+commit `release: VERSION`. Where git knows neither (a shallow clone), that is since the last commit, or since the page was written.
 
 It does not see what is the same in letters (another meaning, a macro's or constant's value), nor whether the item tells the truth.
 """
@@ -175,8 +175,8 @@ def last_tag():
 
 def released(path):
     """The page of the last release."""
-    tag, file = last_tag(), ':./' + path.relative_to(ROOT).as_posix()
-    return tag and git('show', tag + file) or git('show', 'HEAD' + file) or (path.read_text() if path.exists() else '')
+    version = last_tag() or git('log', '-1', '--format=%H', '--extended-regexp', '--grep=^release: [0-9.]+$').strip() or 'HEAD'
+    return git('show', version + ':./' + path.relative_to(ROOT).as_posix()) or (path.read_text() if path.exists() else '')
 
 
 def main(description, path, after):

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 
 """Tests cpp_api.py: what it reads of a header, and that no change of a signature goes untold."""
+import os
 import pathlib
+import shutil
 import tempfile
 import unittest
 import unittest.mock
@@ -152,6 +154,30 @@ class Test(unittest.TestCase):
             for silent in '`run`, P', '`--map`\n- `update-all --map`', '`update-all`, `update_all --map-all`', '`joined`, count':
                 self.assertEqual([gone], self.untold(CHANGELOG % ('- ' + silent, ''), change, before=PYTHON), silent)
             self.assertEqual([], self.untold(CHANGELOG % ('- ' + told, ''), change, before=PYTHON))
+
+    @unittest.skipUnless(shutil.which('git'), 'there is no git')
+    def test_what_was_released_is_the_tags_page_else_that_of_the_version_s_commit(self):
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.object(cpp_api, 'ROOT', pathlib.Path(folder)), \
+                unittest.mock.patch.dict(os.environ, {'GIT_CONFIG_GLOBAL': os.devnull}):
+            page = cpp_api.ROOT / 'api.md'
+            cpp_api.git('init', '-q')
+
+            def commit(subject, text):
+                page.write_text(text)
+                cpp_api.git('add', '.')
+                cpp_api.git('-c', 'user.name=test', '-c', 'user.email=test', 'commit', '-q', '-m', subject)
+
+            page.write_text('not committed')
+            self.assertEqual('not committed', cpp_api.released(page))
+            commit('pages: names', 'older')
+            page.write_text('changed')
+            self.assertEqual('older', cpp_api.released(page))
+            commit('release: 0.3.0', 'of the version')
+            commit('release: what users have to change', 'later')
+            self.assertEqual('of the version', cpp_api.released(page))
+            cpp_api.git('tag', 'v0.3.0')
+            commit('release: 0.4.0', 'newest')
+            self.assertEqual('later', cpp_api.released(page))
 
     def test_the_pages_as_they_are_committed(self):
         for page in cpp_api.PAGE, cpp_api.PAGE.with_name('api_python.md'):
