@@ -124,4 +124,6 @@ for kind in opencv-contrib-python opencv-python-headless; do
 done
 if "$python3" -c 'import cv2' 2>"$work/log" && [ -n "$(ls "$wheels"/*"-cp3$(minor "$python3")-"* 2>"$work/log")" ]; then
     check "$python3" --system-site-packages "numpy<2"  # as Debian's cv2 wants it
+else
+    say "skipped: beside the system's cv2, of which python3-opencv or a wheel for its Python is missing"
 fi

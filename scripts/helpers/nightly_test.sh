@@ -82,6 +82,10 @@ expect "minutes of steps beside each other count once" .ci/nightly table >"$work
 expect "the table has what was run" grep -q "^macos,$commit,.*,passed$" doc/results/night.csv
 expect "the time of the whole night is told" grep -qx "all,,,358,," doc/results/night.csv
 night 1 1
+sed -i "/^python/s/1 tests/(1 skipped)/" "$rows"
+! .ci/nightly table >"$work/out" 2>&1 || expect "where a step skipped all there is no night" false
+expect "what counted nothing is told" grep -qx "python counted nothing" "$work/out"
+night 1 1
 sed -i "s/^bits,$commit/bits,$(git rev-parse --short HEAD)/" "$rows"
 ! .ci/nightly table >"$work/out" 2>&1 || expect "two commits are no night" false
 git checkout -q .

@@ -1,8 +1,8 @@
 #!/bin/sh
 # Installs the Python package into clean virtual environments and runs python/tests there: with pip's newest OpenCV, and
-# with Debian's (python3-opencv). Skips with a word where pip reaches no package index.
+# with Debian's (python3-opencv). Skips with a word where pip reaches no package index, but for --servers, which fails.
 #   scripts/helpers/python_test.sh [--servers] [LIBRARY]
-# --servers: with PostgreSQL, and with Dask's workers in network namespaces, too, where these can be had.
+# --servers: with PostgreSQL, and with Dask's workers in network namespaces, too (root).
 # LIBRARY: the module as a static library of position-independent code, built with the installed OpenCV, as ctest's entry
 # `python` has it, beside which the wheel is left; without it the whole package is built, which takes minutes.
 . "$(dirname "$0")/lib.sh"
@@ -29,6 +29,7 @@ check() {
 }
 
 skip() {
+    [ -z "$servers" ] || fail "no python tests: $*"
     say "skipped: python tests ($*)"
     exit 0
 }
@@ -55,5 +56,6 @@ if "$python3" -c 'import cv2' 2>"$work/log"; then
     "$python3" -m venv --system-site-packages "$work/debian"
     check debian "$work"/*.whl
 else
+    [ -z "$servers" ] || fail "no python tests with Debian's OpenCV: python3-opencv is missing"
     say "skipped: python tests with Debian's OpenCV (python3-opencv is missing)"
 fi
