@@ -1,8 +1,9 @@
 #!/bin/sh
 # Runs every command of README.md, in its order, on a bare Debian made by debootstrap, as someone would who has just
 # unpacked a release: what is in the `sh` blocks but for a wheel's, with the files of the `cmake`, `cpp` and `python` blocks beside it.
-# What README says of the packages of its first command, on Debian 12, must be within 5 % of what apt prints of them. The paths hold
-# spaces. Needs root; the bare system stays in the cache.
+# What README says of the packages of its first command, on Debian 12, must be within 5 % of what apt prints of them. On other releases that
+# command, which installs what the next ones need, is the last, as for someone who begins at "Install it". The paths hold spaces. Needs
+# root; the bare system stays in the cache.
 #   scripts/helpers/newcomer.sh [SUITE] [WHEEL]    by default bookworm
 # With a wheel, that of scripts/wheel.sh, its commands for a wheel and its Python program alone, in a system without a compiler: from pip
 # to the program's answer in ten seconds.
@@ -40,7 +41,7 @@ git -C "$root" ls-files -z --cached --others --exclude-standard | tar -C "$root"
     tar -C "$home/the repository" -x
 cp "$root/tools/synthetic/day.png" "$root/tools/synthetic/night.png" "$home/my project"
 # The blocks as files: commands that speak of match_pair belong to the user's own project.
-"$python3" - "$root/README.md" "$home" <<'PYTHON'
+"$python3" - "$root/README.md" "$home" "$suite" <<'PYTHON'
 import pathlib
 import re
 import sys
@@ -48,14 +49,16 @@ import sys
 readme, home = pathlib.Path(sys.argv[1]).read_text(), pathlib.Path(sys.argv[2])
 names = {'cmake': 'CMakeLists.txt', 'cpp': 'match_pair.cpp', 'python': 'match_pair.py'}
 blocks = re.findall(r'^```(sh|cmake|cpp|python)\n(.*?)^```$', readme, re.MULTILINE | re.DOTALL)
-script = ['set -ex']
+script = []
 for language, text in blocks:
     if language == 'sh':
         if '.whl' not in text:
             script += ['cd "$HOME/%s"' % ('my project' if 'match_pair' in text else 'the repository'), text]
     elif not (home / 'my project' / names[language]).exists() and (language != 'cpp' or 'int main' in text):
         (home / 'my project' / names[language]).write_text(text)
-(home / 'commands.sh').write_text('\n'.join(script))
+if sys.argv[3] != 'bookworm':
+    script = script[2:] + script[:2]
+(home / 'commands.sh').write_text('\n'.join(['set -ex', *script]))
 
 
 def line(part):
@@ -88,6 +91,7 @@ say "running the README's commands in $work/root"
     XDG_CACHE_HOME="/root/a cache" PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
     sh /root/commands.sh' sh "$work/root" </dev/null 2>&1 || touch "$work/failed") | tee "$work/log"
 [ ! -e "$work/failed" ] || exit 1
+grep -qx '[1-9][0-9]* matches' "$work/log" || fail "README's programs found no matches"
 [ -z "$wheel" ] && [ "$suite" = bookworm ] || exit 0  # README tells its megabytes
 printed=$(sed -n 's/^Need to get \([0-9]*\) MB of archives.*/\1/p; s/^After this operation, \([0-9]*\) MB of additional.*/\1/p' "$work/log" |
     head -n 2 | paste -sd ' ')
