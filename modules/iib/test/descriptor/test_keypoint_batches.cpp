@@ -6,7 +6,6 @@
 
 #include "../../src/descriptor/keypoint_batches.hpp"
 
-#include <ctime>
 #include <numeric>
 
 namespace opencv_test {
@@ -159,17 +158,15 @@ Regions staircase(int n, Size image)
 
 Regions cluster(int n, Size image) { return randomRegions(n, Size(image.width / 4, image.height / 4), 9, n); }
 
-// Both bounds were broken by recursion without a limit: 10.4 s and 2 GB for 202,626 keypoints.
-TEST(IIB_KeyPointBatches, work_and_memory_are_linear_for_every_layout)
+// Each round looks at each keypoint once. Recursion without a limit took 10.4 s and 2 GB for 202,626 keypoints.
+TEST(IIB_KeyPointBatches, rounds_and_pixels_are_bounded_for_every_layout)
 {
     for (const auto layout : {grid, staircase, cluster})
         for (int root : {25, 50, 100, 200, 450})
         {
             const Size image(20 * root, 20 * root);
             const Regions regions = layout(root * root, image);
-            const std::clock_t start = std::clock();
             const std::vector<std::vector<int>> batches = cutBatches(regions, 1);
-            EXPECT_LT(std::clock() - start, 2 * CLOCKS_PER_SEC) << regions.size();
             double pixels = 0;
             for (const std::vector<int>& members : batches)
                 pixels += unionOf(regions, members).area();
