@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Mutation testing: builds the library once with every mutant of mutants.txt switched off, then runs the tests with
 one of them switched on at a time: those of its area, which is a folder of modules/iib/test, another module, or
-MODULE/NAME for its test_NAME.cpp. A mutant that none of them notices is a survivor.
+MODULE/NAME for its test_NAME.cpp. A mutant that none of them notices is a survivor. One of code that the processor does
+not run is skipped.
 
 mutate.py --source REPOSITORY --work FOLDER [--only NAME...]
 mutate.py --source REPOSITORY --check
@@ -43,7 +44,7 @@ class Mutant:
         if not fields:
             sys.exit(f"mutants.txt: '{line}' is not NAME: code {{{{right => wrong}}}} code")
         self.name, before, right, self.wrong, after = fields.groups()
-        self.number, self.area = number, area
+        self.number, (self.area, _, self.flag) = number, area.partition(" ")
         self.code = re.compile(r"(\s*)".join(f"({pattern(part)})" for part in (before, right, after)))
         found = [path for path, text in sources.items() for _ in self.code.finditer(text)]
         if len(found) != 1:
@@ -65,7 +66,8 @@ def read_sources(repository):
 
 
 def read_mutants(path, sources):
-    """A mutant a line, `NAME: code {{right => wrong}} code`, below `[AREA]`, whose tests are to notice it."""
+    """A mutant a line, `NAME: code {{right => wrong}} code`, below `[AREA]`, whose tests are to notice it, or below `[AREA FLAG]` if only
+    processors with this flag run the code."""
     mutants, area = [], None
     for line in path.read_text().splitlines():
         if line.startswith("["):
@@ -168,6 +170,11 @@ def main():
     subprocess.check_call(["cmake", "--build", build, "--target", *(f"opencv_test_{module}" for module in modules)])
 
     chosen = [m for m in mutants if not options.only or m.name in options.only]
+    flags = pathlib.Path("/proc/cpuinfo").read_text().split()
+    for mutant in chosen:
+        if mutant.flag and mutant.flag not in flags:
+            print(f"== skipped: {mutant.name}: this processor has no {mutant.flag}")
+    chosen = [m for m in chosen if not m.flag or m.flag in flags]
     programs, filters, limits = {}, {}, {}
     for area in sorted({m.area for m in chosen}):
         started = time.monotonic()
