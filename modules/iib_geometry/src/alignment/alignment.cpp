@@ -28,6 +28,7 @@ const double MOST_PARALLAX = .25;  // of the places that agree may move as if th
 const double LEAST_PARALLAX = 6;   // working pixels: shadows of another light move by less
 const int WORKING_SIZE = 1024;     // as HessianDetector has it
 const int FEATURES = 2000;         // of a view
+const int MOST_IMPROVED = 3;       // times
 const double MOST_TILT = 4;        // that models with a shear are searched for
 const double ANY = 1e3;            // deviation of a number of a transform
 
@@ -201,8 +202,8 @@ Judgement judge(
 struct Answer
 {
     Judgement judgement;
-    Mat agreeing;  //!< as alignImages returns matches
-    Matx33d transform;
+    Mat agreeing;       //!< as alignImages returns matches
+    Matx33d transform;  //!< that most of them agree with, also where it is refused
     Mat error;
 
     bool found() const { return judgement.against.empty(); }
@@ -234,10 +235,11 @@ Answer answerOf(const WorkingPair& pair, int model, int tried)
         }
     }
     answer.agreeing = pair.inPixels(points, aligned.agree);
-    if (!answer.found())
+    if (aligned.fit.squared.empty())
         return answer;
     answer.transform = pair.inPixels(aligned.problem.inPixels(aligned.fit.model));
-    answer.error = Mat(deviationsOf(aligned, points, pair.imageCorners(), beside) * pair.inPixels(1));
+    if (answer.found())
+        answer.error = Mat(deviationsOf(aligned, points, pair.imageCorners(), beside) * pair.inPixels(1));
     return answer;
 }
 
@@ -290,28 +292,41 @@ private:
         }
     }
 
-    //! In views that images turned, zoomed or tilted against each other are alike in, if they are.
+    //! In views that images rotated, zoomed or tilted against each other are alike in, if they are.
     void search(const ImageViews& second, Answer& best) const
     {
-        if (best.found())
+        if (best.judgement.isLast)
+            return improve(second, Matx33d::eye(), 1, best);
+        const bool onlySimilar = model_ == ALIGN_SIMILARITY;
+        searchViews(reference_, second, onlySimilar ? 1 : MOST_TILT,
+                [&](const ViewCandidate& candidate, int tried) {
+                    const Matx33d map = onlySimilar ? similarityOf(candidate.map) : candidate.map;
+                    if (areAlike(map, Matx33d::eye()))
+                        return false;  // it was tried
+                    attempt([&](int size) { return WorkingPair(reference_, second, size, map); }, second,
+                            tried, best);
+                    if (best.judgement.isLast)
+                        improve(second, map, tried, best);
+                    return best.judgement.isLast;
+                });
+    }
+
+    /** Again in the views of the transform that was found, as long as these are others. Where the answer was a refusal, too: matches in views that
+    fit badly may lie as if the camera had moved. */
+    void improve(const ImageViews& second, Matx33d map, int tried, Answer& best) const
+    {
+        for (int round = 0; round < MOST_IMPROVED; round++)
         {
-            const Matx33d map = affineAt(best.transform.inv(), Point2d(reference_.size()) / 2);
-            if (areAlike(map, Matx33d::eye()))
+            const Matx33d next = affineAt(best.transform.inv(), Point2d(reference_.size()) / 2);
+            if (areAlike(next, map))
                 return;
-            const Answer answer = answerOf(WorkingPair(reference_, second, WORKING_SIZE, map), model_, 2);
-            if (answer.found() && answer.agreeing.rows > best.agreeing.rows)
-                best = answer;
+            map = next;
+            const Answer answer =
+                    answerOf(WorkingPair(reference_, second, WORKING_SIZE, map), model_, tried + 1);
+            if (answer.agreeing.rows <= best.agreeing.rows || (best.found() && !answer.found()))
+                return;
+            best = answer;
         }
-        else if (!best.judgement.isLast)
-            searchViews(reference_, second, model_ == ALIGN_SIMILARITY ? 1 : MOST_TILT,
-                    [&](const ViewCandidate& candidate, int tried) {
-                        const Matx33d map =
-                                model_ == ALIGN_SIMILARITY ? similarityOf(candidate.map) : candidate.map;
-                        if (!areAlike(map, Matx33d::eye()))  // else it was tried
-                            attempt([&](int size) { return WorkingPair(reference_, second, size, map); },
-                                    second, tried, best);
-                        return best.judgement.isLast;
-                    });
     }
 
     int model_;

@@ -5,6 +5,7 @@ namespace cv::iib {
 namespace {
 
 const int LEAST_SIDE = 64;  // pixels that are left of a reduced image
+const int SMALL = 480;      // pixels of the longest side: views of a search below it are enlarged
 
 int largestFactor(const Size& size) { return std::max(std::min(size.width, size.height) / LEAST_SIDE, 1); }
 
@@ -48,8 +49,8 @@ WorkingPair::WorkingPair(
 
 WorkingPair::WorkingPair(
         const ImageViews& reference, const ImageViews& image, int workingSize, const Matx33d& map)
-    : images_{&reference, &image},
-      views_(ViewPair::of(map).atMost(workingSize, reference.size(), image.size()))
+    : images_{&reference, &image}, views_(ViewPair::of(map).within(std::min(SMALL, workingSize), workingSize,
+                                           reference.size(), image.size()))
 {
     seen_[0] = reference.seen(views_.views[0], -1, cornersAround(image.size(), map.inv()));
     seen_[1] = image.seen(views_.views[1], (float)views_.angle, cornersAround(reference.size(), map));

@@ -46,7 +46,8 @@ public:
     /** With features that all are turned by one angle, of a part of the image. Not kept.
     @param angle degrees.
     @param part corners of a convex part, pixels of the image. */
-    std::shared_ptr<const SeenView> seen(const View& view, float angle, const std::vector<Point2d>& part) const;
+    std::shared_ptr<const SeenView> seen(
+            const View& view, float angle, const std::vector<Point2d>& part) const;
 
     //! To refine matches of any keypoints. That of the image is kept.
     std::shared_ptr<const PreparedImage> prepared(const View& view) const;

@@ -15,7 +15,8 @@ const double DECISIVE = -25;    // logarithm of the number of false alarms below
 const int LEAST_CLEAR = 50;     // matches that are compared, and
 const double SHARE_CLEAR = .6;  // of them that are supported: these are decisive without a geometry
 const double SHARE_RIGHT = .8;  // of the matches that agree with a geometry, if few lead to wrong ones
-const int WORKING = 1024;       // pixels: largest side of a view
+const int MOST_IMPROVED = 2;    // times
+const int SMALL = 480, WORKING = 1024;  // pixels of the longest side of a view
 
 std::vector<Point2d> placesOf(const Mat& points, const std::vector<uchar>& marks)
 {
@@ -43,10 +44,11 @@ struct Propagated
     std::vector<DMatch> matches;
     Mat points1, points2, covariances, similarities;
 
-    Propagated(const SeenView& first, const SeenView& second, const std::vector<DMatch>& given) : matches(given)
+    Propagated(const SeenView& first, const SeenView& second, const std::vector<DMatch>& given)
+        : matches(given)
     {
-        propagateMatches(first.prepared, first.keypoints, second.prepared, second.keypoints, matches, points1, points2,
-                covariances, similarities);
+        propagateMatches(first.prepared, first.keypoints, second.prepared, second.keypoints, matches, points1,
+                points2, covariances, similarities);
     }
 
     TwoViewGeometry geometry() const
@@ -121,7 +123,9 @@ ViewMatches matched(const SeenView& first, const SeenView& second, bool mayBeCle
     found.logFalseAlarms = geometry.logFalseAlarms;
     found.right = geometry.count();
     if (found.right > 0)
-        found.map = Support(placesOf(found.points1, geometry.inliers), placesOf(found.points2, geometry.inliers)).map;
+        found.map =
+                Support(placesOf(found.points1, geometry.inliers), placesOf(found.points2, geometry.inliers))
+                        .map;
     return found;
 }
 
@@ -160,7 +164,8 @@ public:
         const bool found = best.logFalseAlarms + std::log10((double)tried) < Verdict::CERTAIN;
         if (reason)
             *reason = found ? ""
-                            : format("at most %.0f of %d matches agree, which could be random: the images may not show the "
+                            : format("at most %.0f of %d matches agree, which could be random: the images "
+                                     "may not show the "
                                      "same, or from views that differ too much",
                                       best.right, best.points1.rows);
         if (found)
@@ -174,19 +179,22 @@ private:
     //! Matches in views between which a map leads.
     ViewMatches seenAs(const ImageViews& second, const Matx33d& map) const
     {
-        const ViewPair pair = ViewPair::of(map).atMost(WORKING, first_.size(), second.size());
+        const ViewPair pair = ViewPair::of(map).within(SMALL, WORKING, first_.size(), second.size());
         return matched(*first_.seen(pair.views[0], -1, cornersAround(second.size(), map.inv())),
                 *second.seen(pair.views[1], (float)pair.angle, cornersAround(first_.size(), map)), false);
     }
 
-    //! Matches again in views of the map that the matches themselves have, if that is another one.
-    void improve(const ImageViews& second, const Matx33d& map, ViewMatches& best) const
+    //! Matches again in views of the map that the matches themselves have, as long as that is another one.
+    void improve(const ImageViews& second, Matx33d map, ViewMatches& best) const
     {
-        if (areAlike(best.map, map))
-            return;
-        ViewMatches found = seenAs(second, best.map);
-        if (found.right > best.right)
+        for (int round = 0; round < MOST_IMPROVED && !areAlike(best.map, map); round++)
+        {
+            map = best.map;
+            ViewMatches found = seenAs(second, map);
+            if (found.right <= best.right)
+                return;
             std::swap(found, best);
+        }
     }
 
     ImageViews first_;
@@ -205,9 +213,9 @@ Ptr<ViewMatcher> ViewMatcher::create(InputArray image, int maxFeatures, double m
     return makePtr<ViewMatcherImpl>(image.getMat(), mask.getMat(), maxFeatures, maxTilt);
 }
 
-bool matchViews(InputArray image1, InputArray image2, OutputArray points1, OutputArray points2, OutputArray covariances,
-        OutputArray similarities, OutputArray view, int maxFeatures, double maxTilt, InputArray mask1, InputArray mask2,
-        String* reason)
+bool matchViews(InputArray image1, InputArray image2, OutputArray points1, OutputArray points2,
+        OutputArray covariances, OutputArray similarities, OutputArray view, int maxFeatures, double maxTilt,
+        InputArray mask1, InputArray mask2, String* reason)
 {
     return ViewMatcher::create(image1, maxFeatures, maxTilt, mask1)
             ->match(image2, points1, points2, covariances, similarities, view, mask2, reason);

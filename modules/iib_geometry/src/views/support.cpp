@@ -68,7 +68,8 @@ Matx33d similarityOf(const Points& points1, const Points& points2)
 
 }  // namespace
 
-Support::Support(const Points& all1, const Points& all2, const Matx33d& roughly, double tolerance) : map(roughly)
+Support::Support(const Points& all1, const Points& all2, const Matx33d& roughly, double tolerance)
+    : map(roughly)
 {
     const Points points1 = someOf(all1), points2 = someOf(all2);
     compared = (int)points1.size();
@@ -97,7 +98,8 @@ Support::Support(const Points& all1, const Points& all2, const Matx33d& roughly,
         shifts[0].push_back(shift[0]);
         shifts[1].push_back(shift[1]);
     }
-    map = Matx33d(found(0, 0), found(0, 1), medianOf(shifts[0]), found(1, 0), found(1, 1), medianOf(shifts[1]), 0, 0, 1);
+    map = Matx33d(found(0, 0), found(0, 1), medianOf(shifts[0]), found(1, 0), found(1, 1),
+            medianOf(shifts[1]), 0, 0, 1);
 }
 
 Support::Support(const Points& points1, const Points& points2)

@@ -17,7 +17,8 @@ struct Support
 
     /** @param map roughly; of it only the derivative counts.
     @param tolerance of a neighbour's displacement, in parts of it. */
-    Support(const std::vector<Point2d>& points1, const std::vector<Point2d>& points2, const Matx33d& map, double tolerance);
+    Support(const std::vector<Point2d>& points1, const std::vector<Point2d>& points2, const Matx33d& map,
+            double tolerance);
 
     //! Of matches most of which are right, between which any similarity may lead.
     Support(const std::vector<Point2d>& points1, const std::vector<Point2d>& points2);

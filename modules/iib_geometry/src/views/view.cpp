@@ -10,10 +10,11 @@
 namespace cv::iib {
 namespace {
 
-const int LEAST_SIDE = 16;          // pixels of a view
-const double LEAST_TILT = 1.25;     // below it a view is reduced by one scale
+const int LEAST_SIDE = 16;           // pixels of a view
+const double LEAST_TILT = 1.25;      // below it a view is reduced by one scale
 const double LEAST_SHORTENED = .95;  // a scale above it is 1
 
+const double MOST_ENLARGED = 2;  // factor: what is enlarged more has no points of its own
 const double MOST_TURN = 8 * CV_PI / 180, MOST_SCALE = 1.2;  // between views that match as well as others
 
 Mat affine(const Matx33d& map) { return Mat(map.get_minor<2, 3>(0, 0)); }
@@ -32,7 +33,8 @@ View viewOf(double longitude, Vec2d scales)
 
 bool View::operator<(const View& other) const
 {
-    return std::tie(longitude, scales[0], scales[1]) < std::tie(other.longitude, other.scales[0], other.scales[1]);
+    return std::tie(longitude, scales[0], scales[1]) <
+           std::tie(other.longitude, other.scales[0], other.scales[1]);
 }
 
 Size View::turnedSize(const Size& image) const
@@ -49,15 +51,16 @@ Matx33d View::turn(const Size& image) const
     const double c = std::cos(longitude), s = std::sin(longitude);
     const Size turned = turnedSize(image);
     const double x = (image.width - 1) / 2., y = (image.height - 1) / 2.;
-    return Matx33d(c, s, (turned.width - 1) / 2. - c * x - s * y, -s, c, (turned.height - 1) / 2. + s * x - c * y, 0, 0,
-            1);
+    return Matx33d(c, s, (turned.width - 1) / 2. - c * x - s * y, -s, c,
+            (turned.height - 1) / 2. + s * x - c * y, 0, 0, 1);
 }
 
 //! What is left at the right and below a multiple of a whole factor is left out.
 Size View::shownSize(const Size& image) const
 {
     const int factor = cvRound(1 / scales[0]);
-    if (longitude != 0 || scales != Vec2d::all(1. / factor) || factor * LEAST_SIDE > std::min(image.width, image.height))
+    if (longitude != 0 || scales != Vec2d::all(1. / factor) ||
+            factor * LEAST_SIDE > std::min(image.width, image.height))
         return turnedSize(image);
     return Size(image.width / factor, image.height / factor) * factor;
 }
@@ -80,14 +83,16 @@ Matx33d View::fromImage(const Size& image) const
 
 Mat View::pixels(const Mat& image) const
 {
-    if (isImage() || image.empty() || (image.depth() != CV_8U && image.depth() != CV_16U && image.depth() != CV_32F))
+    if (isImage() || image.empty() ||
+            (image.depth() != CV_8U && image.depth() != CV_16U && image.depth() != CV_32F))
         return image;  // the extractor says what is wrong
     Mat turned = image, view;
     if (longitude == 0)
         turned = image(Rect(Point(), shownSize(image.size())));
     else
-        warpAffine(image, turned, affine(turn(image.size())), turnedSize(image.size()), INTER_LINEAR, BORDER_REFLECT_101);
-    resize(turned, view, sizeOf(image.size()), 0, 0, INTER_AREA);
+        warpAffine(image, turned, affine(turn(image.size())), turnedSize(image.size()), INTER_LINEAR,
+                BORDER_REFLECT_101);
+    resize(turned, view, sizeOf(image.size()), 0, 0, scales[1] > 1 ? INTER_CUBIC : INTER_AREA);
     return view;
 }
 
@@ -121,13 +126,13 @@ ViewPair ViewPair::of(const Matx33d& affine)
     return pair;
 }
 
-ViewPair ViewPair::atMost(int side, const Size& image1, const Size& image2) const
+ViewPair ViewPair::within(int least, int most, const Size& image1, const Size& image2) const
 {
     const Size size1 = views[0].sizeOf(image1), size2 = views[1].sizeOf(image2);
-    const double by = std::min(1., side / (double)std::max({size1.width, size1.height, size2.width, size2.height}));
+    const double longest = std::max({size1.width, size1.height, size2.width, size2.height});
     ViewPair pair = *this;
     for (View& view : pair.views)
-        view.scales *= by;
+        view.scales *= std::min(std::clamp(least / longest, 1., MOST_ENLARGED), most / longest);
     return pair;
 }
 
@@ -137,7 +142,8 @@ Matx33d affineAt(const Matx33d& transform, const Point2d& point)
     const Point2d x = moved(transform, point + Point2d(step, 0)) - moved(transform, point - Point2d(step, 0)),
                   y = moved(transform, point + Point2d(0, step)) - moved(transform, point - Point2d(0, step)),
                   there = moved(transform, point);
-    return {x.x, y.x, there.x - x.x * point.x - y.x * point.y, x.y, y.y, there.y - x.y * point.x - y.y * point.y, 0, 0, 1};
+    return {x.x, y.x, there.x - x.x * point.x - y.x * point.y, x.y, y.y,
+            there.y - x.y * point.x - y.y * point.y, 0, 0, 1};
 }
 
 Matx33d similarityOf(const Matx33d& map)

@@ -6,11 +6,13 @@
 namespace cv::iib {
 
 /** An image as a camera farther away or beside it would see it: turned by an angle, then shortened along both axes (ASIFT's
-simulated views; Morel and Yu 2009, section 2). A view never enlarges. */
+simulated views; Morel and Yu 2009, section 2). */
 struct View
 {
-    double longitude = 0;  //!< radians by which the image is turned before it is shortened; 0 where both scales are equal
-    Vec2d scales{1, 1};    //!< of the turned image's width and height, over 0 and at most 1
+    double longitude =
+            0;  //!< radians by which the image is turned before it is shortened; 0 where both scales are equal
+    Vec2d scales{1,
+            1};  //!< of the turned image's width and height, over 0; over 1 in small images that are enlarged
 
     static View reduced(double scale) { return {0, {scale, scale}}; }
     static View tilted(double tilt, double longitude) { return {longitude, {1 / tilt, 1}}; }
@@ -40,15 +42,16 @@ private:
 struct ViewPair
 {
     View views[2];
-    double angle = 0;  //!< degrees, clockwise, 0 or more and less than 360, by which the second view is turned against the first
+    double angle =
+            0;  //!< degrees, clockwise, 0 or more and less than 360, by which the second view is turned against the first
 
     /** The views of two images between which an affine map leads: along each axis the image that has more pixels is shortened.
     @param map from pixels of image 1 to pixels of image 2. */
     static ViewPair of(const Matx33d& map);
 
-    //! The same, reduced so that neither has a side of more pixels.
-    ViewPair atMost(int side, const Size& image1, const Size& image2) const;
-
+    /** The same, reduced to a longest side of `most` pixels, or enlarged up to twice towards `least` pixels: there small images have more
+    points. */
+    ViewPair within(int least, int most, const Size& image1, const Size& image2) const;
 };
 
 //! The derivative of a transform at a point, as an affine map with that point where the transform has it.

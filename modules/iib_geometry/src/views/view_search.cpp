@@ -9,15 +9,16 @@ namespace {
 
 // Every multiple of 30 degrees is a second angle less a first one; descriptors still match 15 degrees off.
 const std::vector<float> FIRST_ANGLES{-1, 30, 60}, SECOND_ANGLES{-1, 90, 180, 270};
-const int LEVELS = 5;             // of the scale, each the square root of 2 below the one before
-const double BORNE = 2;           // tilt that the descriptor bears
-const double LONGITUDES = 72;     // degrees, over the tilt: between tilted views (Morel and Yu 2009, section 3.2)
-const double FARTHER = .6;        // scale of the other image, to a tilted view
-const double TOLERANCE = .4;      // of displacements, by how far views are from the true one
-const double EXACT = .25;         // of displacements around the estimated map
-const int MUCH = 30;              // matches: support by which a candidate is tried at once
-const int LEAST = 4;              // matches: support by which a candidate is tried at all
-const int MOST_TRIED = 6;         // of such candidates
+const int LEVELS = 5;    // of the scale, each the square root of 2 below the one before
+const double BORNE = 2;  // tilt that the descriptor bears
+const double LONGITUDES =
+        72;                   // degrees, over the tilt: between tilted views (Morel and Yu 2009, section 3.2)
+const double FARTHER = .6;    // scale of the other image, to a tilted view
+const double TOLERANCE = .4;  // of displacements, by how far views are from the true one
+const double EXACT = .25;     // of displacements around the estimated map
+const int MUCH = 30;          // matches: support by which a candidate is tried at once
+const int LEAST = 4;          // matches: support by which a candidate is tried at all
+const int MOST_TRIED = 6;     // of such candidates
 
 std::vector<std::pair<View, View>> scaledViews()
 {
@@ -63,7 +64,8 @@ std::vector<Point2d> placesOf(const std::vector<KeyPoint>& keypoints, const std:
 ViewCandidate compare(const ImageViews& first, const View& view1, const ImageViews& second, const View& view2,
         const HierarchicalMatcher& matcher)
 {
-    const std::vector<Described>&features1 = first.few(view1, FIRST_ANGLES), &features2 = second.few(view2, SECOND_ANGLES);
+    const std::vector<Described>&features1 = first.few(view1, FIRST_ANGLES),
+          &features2 = second.few(view2, SECOND_ANGLES);
     const Matx33d to1 = first.toFew(view1).inv(), to2 = second.toFew(view2).inv();
     ViewCandidate best{Matx33d::eye(), 0};
     for (size_t i = 0; i < features1.size(); i++)
@@ -75,8 +77,10 @@ ViewCandidate compare(const ImageViews& first, const View& view1, const ImageVie
             std::vector<DMatch> matches;
             matcher.match(features1[i].codes, features2[j].codes, matches);
             const Matx33d map = to2 * rotation(angle) * to1.inv();
-            const std::vector<Point2d> places1 = placesOf(features1[i].keypoints, matches, &DMatch::queryIdx, to1),
-                                       places2 = placesOf(features2[j].keypoints, matches, &DMatch::trainIdx, to2);
+            const std::vector<Point2d> places1 = placesOf(
+                                               features1[i].keypoints, matches, &DMatch::queryIdx, to1),
+                                       places2 = placesOf(
+                                               features2[j].keypoints, matches, &DMatch::trainIdx, to2);
             const Support roughly(places1, places2, map, TOLERANCE);
             if (roughly.count <= best.support)
                 continue;

@@ -24,7 +24,8 @@ struct Change
 
     Matx33d from(const Size& size, Size& canvas) const
     {
-        const Matx33d shape = turned(degrees) * turned(-25) * Matx33d::diag({scale / tilt, scale, 1}) * turned(25);
+        const Matx33d shape =
+                turned(degrees) * turned(-25) * Matx33d::diag({scale / tilt, scale, 1}) * turned(25);
         std::vector<Point2d> at;
         perspectiveTransform(std::vector<Point2d>{{0, 0}, {size.width - 1., 0}, {0, size.height - 1.},
                                      {size.width - 1., size.height - 1.}},
@@ -48,8 +49,8 @@ struct Change
         const int finer = 4;  // the mean of so many pixels a side is one, as a sensor has it
         const double shift = .5 * (finer - 1);
         Mat fine, result;
-        warpPerspective(image, fine, Matx33d(finer, 0, shift, 0, finer, shift, 0, 0, 1) * truth, canvas * finer,
-                INTER_LINEAR, BORDER_CONSTANT, Scalar(128));
+        warpPerspective(image, fine, Matx33d(finer, 0, shift, 0, finer, shift, 0, 0, 1) * truth,
+                canvas * finer, INTER_LINEAR, BORDER_CONSTANT, Scalar(128));
         resize(fine, result, canvas, 0, 0, INTER_AREA);
         return inOtherLight(result);
     }
@@ -77,8 +78,9 @@ TEST(Views, match_at_any_zoom_rotation_and_tilt)
 {
     const Mat image = largePicture(1);
     for (const Change& change : {Change{"reduced", .25, 0, 1, 200}, Change{"enlarged", 2, 0, 1, 300},
-                 Change{"rotated", 1, 45, 1, 500}, Change{"upside down", .5, 200, 1, 400}, Change{"tilted", 1, 0, 3, 250},
-                 Change{"tilted much", 1, 0, 4, 150}, Change{"tilted and rotated", 1, 60, 2, 400}})
+                 Change{"rotated", 1, 45, 1, 500}, Change{"upside down", .5, 200, 1, 400},
+                 Change{"tilted", 1, 0, 3, 250}, Change{"tilted much", 1, 0, 4, 150},
+                 Change{"tilted and rotated", 1, 60, 2, 400}})
     {
         Matx33d truth;
         const Mat other = change.of(image, truth);
@@ -87,17 +89,19 @@ TEST(Views, match_at_any_zoom_rotation_and_tilt)
             const Mat images[] = {swapped ? other : image, swapped ? image : other};
             Mat points1, points2, covariances, similarities, view;
             String reason;
-            ASSERT_TRUE(matchViews(images[0], images[1], points1, points2, covariances, similarities, view, 1000, 4,
-                    noArray(), noArray(), &reason))
+            ASSERT_TRUE(matchViews(images[0], images[1], points1, points2, covariances, similarities, view,
+                    1000, 4, noArray(), noArray(), &reason))
                     << change.name << ": " << reason;
             EXPECT_EQ("", reason);
-            const int right = swapped ? countOfRight(points2, points1, truth) : countOfRight(points1, points2, truth);
+            const int right =
+                    swapped ? countOfRight(points2, points1, truth) : countOfRight(points1, points2, truth);
             EXPECT_GE(right, change.least) << change.name << swapped;
             EXPECT_GE(right, .9 * points1.rows) << change.name << swapped;
             EXPECT_EQ(Size(3, points1.rows), covariances.size());
             EXPECT_EQ(Size(1, points1.rows), similarities.size());
             const Matx33d there = swapped ? Matx33d(view).inv() : Matx33d(view);
-            EXPECT_LT(cv::norm(there * truth.inv(), Matx33d::eye(), NORM_INF), 5) << change.name << swapped << view;
+            EXPECT_LT(cv::norm(there * truth.inv(), Matx33d::eye(), NORM_INF), 5)
+                    << change.name << swapped << view;
         }
     }
 }
@@ -106,7 +110,8 @@ TEST(Views, match_at_any_zoom_rotation_and_tilt)
 TEST(Views, covariances_are_of_pixels_of_the_image)
 {
     Matx33d truth;
-    const Mat image = largePicture(2), other = Change{"", 3, 30, 1, 0}.of(image(Rect(200, 150, 220, 170)), truth);
+    const Mat image = largePicture(2),
+              other = Change{"", 3, 30, 1, 0}.of(image(Rect(200, 150, 220, 170)), truth);
     Mat points1, points2, covariances;
     ASSERT_TRUE(matchViews(image(Rect(200, 150, 220, 170)), other, points1, points2, covariances));
     std::vector<double> errors;
@@ -144,8 +149,8 @@ TEST(Views, refuses_images_of_other_scenes)
     {
         Mat points1, points2, view;
         String reason;
-        EXPECT_FALSE(matchViews(picture(seed), picture(seed + 50), points1, points2, noArray(), noArray(), view, 1000, 4,
-                noArray(), noArray(), &reason))
+        EXPECT_FALSE(matchViews(picture(seed), picture(seed + 50), points1, points2, noArray(), noArray(),
+                view, 1000, 4, noArray(), noArray(), &reason))
                 << seed;
         EXPECT_FALSE(reason.empty());
         EXPECT_TRUE(view.empty());
@@ -187,10 +192,12 @@ TEST(Views, masks_hold_in_all_views)
     ASSERT_TRUE(matchViews(image, other, points1, points2, noArray(), noArray(), noArray(), 1000, 4, mask));
     for (int i = 0; i < points1.rows; i++)
         EXPECT_LT(points1.at<float>(i, 0), 323);
-    EXPECT_THROW(matchViews(image, other, points1, points2, noArray(), noArray(), noArray(), 1000, 4, noArray(), mask),
+    EXPECT_THROW(matchViews(image, other, points1, points2, noArray(), noArray(), noArray(), 1000, 4,
+                         noArray(), mask),
             cv::Exception);
     for (double tilt : {.5, 9., std::numeric_limits<double>::quiet_NaN()})
-        EXPECT_THROW(matchViews(image, other, points1, points2, noArray(), noArray(), noArray(), 1000, tilt), cv::Exception);
+        EXPECT_THROW(matchViews(image, other, points1, points2, noArray(), noArray(), noArray(), 1000, tilt),
+                cv::Exception);
 }
 
 TEST(Views, show_two_images_in_one_shape_without_enlarging)
@@ -198,7 +205,8 @@ TEST(Views, show_two_images_in_one_shape_without_enlarging)
     RNG random(3);
     for (int trial = 0; trial < 200; trial++)
     {
-        const double first = std::exp(random.uniform(-1.5, 1.5)), second = std::exp(random.uniform(-1.5, 1.5));
+        const double first = std::exp(random.uniform(-1.5, 1.5)),
+                     second = std::exp(random.uniform(-1.5, 1.5));
         const Matx33d map = turned(random.uniform(0., 360.)) * Matx33d::diag({first, second, 1}) *
                             turned(random.uniform(0., 360.));
         const ViewPair pair = ViewPair::of(map);
@@ -222,8 +230,8 @@ TEST(Views, pixels_are_where_their_map_has_them)
     const Point2d spot(201, 77);
     Mat image(300, 400, CV_32F, Scalar(0));
     circle(image, Point(spot), 9, Scalar(1), FILLED, LINE_AA);
-    for (const View& view : {View::reduced(.5), View::reduced(1 / 3.), View::reduced(.37), View::tilted(2, .5),
-                 View{1, {.4, .7}}})
+    for (const View& view : {View::reduced(.5), View::reduced(1 / 3.), View::reduced(.37),
+                 View::tilted(2, .5), View{1, {.4, .7}}})
     {
         Mat seen = view.pixels(image);
         ASSERT_EQ(view.sizeOf(image.size()), seen.size());

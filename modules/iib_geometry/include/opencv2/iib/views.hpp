@@ -47,9 +47,9 @@ Limits:
 @throws cv::Exception (StsOutOfRange) for another maxTilt or maxFeatures, (StsBadArg) for masks of another size or type, and as
     IIBDescriptorExtractor::compute for images */
 CV_EXPORTS_W bool matchViews(InputArray image1, InputArray image2, OutputArray points1, OutputArray points2,
-        OutputArray covariances = noArray(), OutputArray similarities = noArray(), OutputArray view = noArray(),
-        int maxFeatures = 4000, double maxTilt = 4, InputArray mask1 = noArray(), InputArray mask2 = noArray(),
-        CV_OUT String* reason = nullptr);
+        OutputArray covariances = noArray(), OutputArray similarities = noArray(),
+        OutputArray view = noArray(), int maxFeatures = 4000, double maxTilt = 4,
+        InputArray mask1 = noArray(), InputArray mask2 = noArray(), CV_OUT String* reason = nullptr);
 
 /** @brief Matches one image with many others as matchViews does, and computes its views once.
 
@@ -65,8 +65,9 @@ public:
 
     //! As matchViews.
     CV_WRAP virtual bool match(InputArray image2, OutputArray points1, OutputArray points2,
-            OutputArray covariances = noArray(), OutputArray similarities = noArray(), OutputArray view = noArray(),
-            InputArray mask2 = noArray(), CV_OUT String* reason = nullptr) const = 0;
+            OutputArray covariances = noArray(), OutputArray similarities = noArray(),
+            OutputArray view = noArray(), InputArray mask2 = noArray(),
+            CV_OUT String* reason = nullptr) const = 0;
 };
 
 //! @}
