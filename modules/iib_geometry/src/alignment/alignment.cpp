@@ -8,6 +8,7 @@
 #include "../pose/uncertainty.hpp"
 #include "../pose/verdict.hpp"
 #include "../common/points.hpp"
+#include "../views/support.hpp"
 #include "../views/view_search.hpp"
 #include "working_pair.hpp"
 
@@ -209,12 +210,25 @@ struct Answer
     bool found() const { return judgement.against.empty(); }
 };
 
+std::vector<Point2d> agreeing(const Mat& points, const Verdict::Marks& agree)
+{
+    std::vector<Point2d> chosen;
+    for (int i = 0; i < points.rows; i++)
+        if (agree[i])
+            chosen.push_back(points.at<Point2d>(i));
+    return chosen;
+}
+
 Answer answerOf(const WorkingPair& pair, int model, int tried)
 {
     AlignedPoints points = pair.match();
     Aligned aligned(points, model);
     Answer answer;
     answer.judgement = judge(aligned, points, model, pair, tried);
+    if (answer.found() && tried > 1 && areOneStructure(agreeing(points.reference, aligned.agree)))
+        answer.judgement = {
+                "the images share one structure that looks the same in some view, such as a round spot",
+                false};
     const double beside =
             answer.found() ? deviationBeside(aligned, points) : 0;  // only those that agree are refined
     if (answer.found() && pair.isReduced())

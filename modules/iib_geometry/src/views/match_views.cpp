@@ -87,13 +87,13 @@ ViewMatches inImages(const Propagated& propagated, const SeenView& first, const 
     return found;
 }
 
-//! @param mayBeClear whether matches are decisive that their neighbours support, without a geometry.
-ViewMatches matched(const SeenView& first, const SeenView& second, bool mayBeClear)
+//! @param areOrdinary of images as they are: then matches that their neighbours support are decisive without a geometry.
+ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdinary)
 {
     const std::vector<DMatch> given = matchesOf(first, second);
     Propagated propagated(first, second, given);
     ViewMatches found = inImages(propagated, first, second);
-    if (mayBeClear)
+    if (areOrdinary)
     {
         const Support support(placesOf(found.points1, {}), placesOf(found.points2, {}));
         if (support.compared >= LEAST_CLEAR && support.share() > SHARE_CLEAR)
@@ -112,14 +112,18 @@ ViewMatches matched(const SeenView& first, const SeenView& second, bool mayBeCle
         for (size_t i = 0; i < given.size(); i++)
             if (geometry.inliers[i])
                 agreeing.push_back(given[i]);
-        const Propagated again(first, second, agreeing);
+        Propagated again(first, second, agreeing);
         const TwoViewGeometry geometryAgain = again.geometry();
         if (geometryAgain.count() > geometry.count())
         {
             found = inImages(again, first, second);
+            std::swap(propagated, again);
             geometry = geometryAgain;
         }
     }
+    if (!areOrdinary && (areOneStructure(placesOf(propagated.points1, geometry.inliers)) ||
+                                areOneStructure(placesOf(propagated.points2, geometry.inliers))))
+        return found;
     found.logFalseAlarms = geometry.logFalseAlarms;
     found.right = geometry.count();
     if (found.right > 0)

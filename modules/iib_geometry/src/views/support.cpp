@@ -2,6 +2,7 @@
 #include "support.hpp"
 
 #include <algorithm>
+#include <set>
 
 namespace cv::iib {
 namespace {
@@ -10,7 +11,9 @@ const size_t MOST_COMPARED = 250;  // matches
 const size_t NEIGHBOURS = 10;      // of a match, in the first image
 const int LEAST_NEIGHBOURS = 2;    // that agree with it
 const double LEAST_DISTANCE = 2;   // pixels; of nearer neighbours the direction is uncertain
-const double EXACT = .25;          // tolerance around an estimated map
+const double REGION = 64;          // pixels: about the side of a described region
+const size_t FEW_REGIONS = 6;
+const double EXACT = .25;  // tolerance around an estimated map
 
 typedef std::vector<Point2d> Points;
 
@@ -106,6 +109,14 @@ Support::Support(const Points& points1, const Points& points2)
 {
     const Support similar(points1, points2, similarityOf(someOf(points1), someOf(points2)), 2 * EXACT);
     *this = Support(points1, points2, similar.map, EXACT);
+}
+
+bool areOneStructure(const Points& points)
+{
+    std::set<std::pair<int, int>> regions;
+    for (const Point2d& p : points)
+        regions.insert({cvFloor(p.x / REGION), cvFloor(p.y / REGION)});
+    return regions.size() < FEW_REGIONS;
 }
 
 }  // namespace cv::iib

@@ -26,4 +26,9 @@ struct Support
     double share() const { return (double)count / std::max(compared, 1); }
 };
 
+/** Whether matches that a search found are of one structure of an image alone, such as a round spot, which looks like others in some view:
+whether they lie in few regions as large as one that is described.
+@param points of the matches in a view, pixels. */
+bool areOneStructure(const std::vector<Point2d>& points);
+
 }  // namespace cv::iib
