@@ -15,7 +15,7 @@ ALLOWED['pose'] = {'pose', 'common'}  # of iib_geometry
 ALLOWED['views'] = {'views', *ALLOWED['pose']}
 ALLOWED['alignment'] = {'alignment', *ALLOWED['views']}
 ALLOWED['map'] = {'map', *ALLOWED['pose']}
-ALLOWED['locate'] = {'locate', *ALLOWED['map']}
+ALLOWED['locate'] = {'locate', *ALLOWED['map'], *ALLOWED['views']}
 for wing in ('descriptor', 'matcher', 'detector', 'normalization', 'refinement'):
     ALLOWED[wing + '/kernels'] = {wing + '/kernels', 'common'}
     ALLOWED[wing] = {wing, wing + '/kernels', 'common'}

@@ -11,7 +11,7 @@ namespace {
 
 // Pixels: deviation of a keypoint that refineMatches placed, with that of its point, before it is learned and at least.
 constexpr double REFINED = .3, LEAST_REFINED = .03;
-constexpr double MAX_RATIO = 3;  // of the sizes at which two images see a point
+constexpr double MAX_RATIO = 6;  // of the sizes at which two images see a point
 
 }  // namespace
 

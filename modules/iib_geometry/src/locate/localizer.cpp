@@ -8,14 +8,18 @@
 #include "../map/map_error.hpp"
 #include "../map/mapping.hpp"
 #include "../map/upright.hpp"
+#include "map_in_views.hpp"
 
 namespace cv::iib {
 namespace {
 
 constexpr size_t SHORTLIST = 20, CANDIDATES = 5;  // of the map's images: by votes, and of these by matches
 constexpr size_t NEAREST = 2;                     // of the map's images, to a prior
-constexpr int RANKING = 200;  // strongest codes of an image, whose matches rank the shortlist
-constexpr double GATE = .1;   // of the longer side: how far from where a prior has them points are looked for
+constexpr double VOTING_SCALES[] = {1, .5, 2};
+constexpr double SHARE_CERTAIN = .5;  // of matches in views that agree: other images need not be compared
+constexpr int IN_VIEWS = 2000;        // keypoints of an image that is matched in views
+constexpr int RANKING = 200;          // strongest codes of an image, whose matches rank the shortlist
+constexpr double GATE = .1;  // of the longer side: how far from where a prior has them points are looked for
 
 //! Which keypoints (rows) may match which points (columns): those near where the prior has them.
 Mat gate(const Features& features, const std::vector<Point3d>& points, const Camera& camera,
@@ -125,6 +129,50 @@ void ImageLocator::locate(const Camera& camera, const Affine3d* prior, LocatedIm
         findPose(matches, map_, pictures_, camera, found);
 }
 
+std::vector<size_t> ImageLocator::similarInViews(const ImageViews& image) const
+{
+    std::vector<float> most(map_.images.size());
+    for (double scale : VOTING_SCALES)
+    {
+        std::vector<float> angles;
+        for (int degrees = 0; degrees < 360; degrees += 30)
+            angles.push_back((float)degrees);
+        for (const Described& turned : image.fewOnce(View::reduced(scale), angles))
+        {
+            if (turned.codes.empty() || turned.codes.cols != iib_->descriptorSize())
+                continue;
+            const std::vector<float> voted = votes_.vote(turned.codes).ofImages;
+            for (size_t k = 0; k < most.size(); k++)
+                most[k] = std::max(most[k], voted[k]);
+        }
+    }
+    return best(most.size(), CANDIDATES, [&](size_t a, size_t b) { return most[a] > most[b]; });
+}
+
+void ImageLocator::locateInViews(
+        const Camera& camera, const Mat& image, const Mat& mask, LocatedImage& found) const
+{
+    const ImageViews views(image, mask, IN_VIEWS);
+    found.compared = similarInViews(views);
+    LocatedImage best = found;  // where a pattern repeats, images of other places match as well
+    for (size_t k : found.compared)
+    {
+        if (map_.images[k].picture.pixels.empty())
+            continue;
+        const std::vector<Match> matches = matchesInViews(map_, k, views);
+        if (matches.size() < LEAST_INLIERS)
+            continue;
+        LocatedImage other = found;
+        findPose(matches, map_, pictures_, camera, other);
+        if (other.location.found && other.location.inliers > best.location.inliers)
+            best = other;
+        if (best.location.found && best.location.inliers > SHARE_CERTAIN * (double)best.location.matches)
+            break;
+    }
+    if (best.location.found)
+        found = best;
+}
+
 LocatedImage ImageLocator::find(
         const Photograph& image, const Camera& storedCamera, const Affine3d* storedPrior) const
 {
@@ -152,6 +200,8 @@ LocatedImage ImageLocator::find(
         found.compared = similar(found.features.codes);
         locate(camera, nullptr, found);
     }
+    if (!found.location.found && !prior)
+        locateInViews(camera, upright.image(image.pixels), upright.image(image.mask), found);
     found.prepared = PreparedPicture();
     Location& location = found.location;
     if (location.found)

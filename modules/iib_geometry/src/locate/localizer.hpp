@@ -2,6 +2,7 @@
 #pragma once
 
 #include "pose_search.hpp"
+#include "../views/image_views.hpp"
 #include "image_voting.hpp"
 
 namespace cv::iib {
@@ -20,6 +21,9 @@ private:
     std::vector<size_t> near(const Affine3d& pose) const;
     std::vector<size_t> similar(const Mat& codes) const;
     void locate(const Camera& camera, const Affine3d* prior, LocatedImage& found) const;
+    std::vector<size_t> similarInViews(const ImageViews& image) const;
+    //! By views of the image and of the map's images that it was compared with.
+    void locateInViews(const Camera& camera, const Mat& image, const Mat& mask, LocatedImage& found) const;
 
     const Map& map_;
     const bool lines_;

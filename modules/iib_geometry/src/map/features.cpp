@@ -47,7 +47,7 @@ private:
 
 }  // namespace
 
-void extract(IIB& iib, const Mat& image, const Mat& mask, Features& features, int maxSize)
+void extract(IIB& iib, const Mat& image, const Mat& mask, Features& features, int maxSize, float angle)
 {
     const int side = std::max(image.cols, image.rows);
     const double scale = maxSize > 0 && side > maxSize ? (double)maxSize / side : 1;
@@ -59,7 +59,10 @@ void extract(IIB& iib, const Mat& image, const Mat& mask, Features& features, in
             resize(mask, allowed, seen.size(), 0, 0, INTER_NEAREST);
     }
     std::vector<KeyPoint> keypoints;
-    iib.detectAndCompute(seen, allowed, keypoints, features.codes);
+    iib.detect(seen, keypoints, allowed);
+    for (KeyPoint& k : keypoints)
+        k.angle = angle;
+    iib.compute(seen, keypoints, features.codes);
     for (const KeyPoint& k : keypoints)
     {
         features.pixels.emplace_back((k.pt.x + .5) / scale - .5, (k.pt.y + .5) / scale - .5);
@@ -74,10 +77,15 @@ void extract(IIB& iib, const Mat& image, const Mat& mask, Features& features, in
 Ptr<IIB> describerOf(bool orbAndAkaze, int points)
 {
     if (!orbAndAkaze)
-        return IIB::createRecommended(points);
+    {
+        const Ptr<IIB> iib = IIB::createRecommended(points);
+        iib->setOrientation(IIB::ORIENTATION_KEYPOINT);
+        return iib;
+    }
 #if CV_VERSION_MAJOR < 5
     const Ptr<IIB> iib = IIB::create(IIB::scaleFactorFor(ORB::create()));
     iib->setDetector(makePtr<OrbAndAkaze>(points));
+    iib->setOrientation(IIB::ORIENTATION_KEYPOINT);
     return iib;
 #else
     CV_Error(Error::StsNotImplemented, "OpenCV 5 has no AKAZE: maps of its points need OpenCV 4");

@@ -13,8 +13,10 @@ typedef MapImage Features;
 Ptr<IIB> describerOf(bool orbAndAkaze, int points);
 
 /** @param maxSize pixels of the longer side to which a larger image is reduced; 0: it is not. Keypoints are in the image's own pixels.
-@param features of the image. */
-void extract(IIB& iib, const Mat& image, const Mat& mask, Features& features, int maxSize = 0);
+@param features of the image.
+@param angle degrees by which the image is rotated, clockwise, at which its keypoints are described; -1: upright. */
+void extract(
+        IIB& iib, const Mat& image, const Mat& mask, Features& features, int maxSize = 0, float angle = -1);
 
 //! @throws cv::Exception for an image that is not of a camera's size, or not 8-bit, grey or BGR, and another mask.
 inline void checkPhotograph(const Mat& image, const Mat& mask, const Size& size)

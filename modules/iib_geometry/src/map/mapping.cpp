@@ -3,6 +3,7 @@
 #include "mapping.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <set>
@@ -103,9 +104,48 @@ std::string problemOf(const Photograph& photograph, const Size& size)
     return "";
 }
 
+Vec3d axisOf(const Affine3d& cameraFromWorld, int axis)
+{
+    return Vec3d(cameraFromWorld.rotation().row(axis).t().val);
+}
+
+/** A direction of the world that is up in many of the images, and that all see from aside: by it images are described as if none was rotated,
+those of a camera that was held upright, and those of one that looks down. */
+Vec3d commonUp(const std::vector<MapImage>& images)
+{
+    const double agreement =
+            .1;  // what an image adds in which the direction is up, to one that sees it from aside
+    Vec3d best;
+    double most = -std::numeric_limits<double>::max();
+    for (const MapImage& candidate : images)
+    {
+        const Vec3d up = -axisOf(candidate.cameraFromWorld, 1);
+        double score = 0;
+        for (const MapImage& image : images)
+            score += 1 - std::pow(up.dot(axisOf(image.cameraFromWorld, 2)), 2) -
+                     agreement * up.dot(axisOf(image.cameraFromWorld, 1));
+        if (score > most)
+        {
+            most = score;
+            best = up;
+        }
+    }
+    return best;
+}
+
+//! Degrees by which an image is rotated against a direction of the world, or -1 where upright keypoints match as well.
+float angleTo(const Vec3d& up, const Affine3d& cameraFromWorld)
+{
+    const float least = 15;
+    const Vec3d seen = cameraFromWorld.rotation() * up;
+    const float angle = fastAtan2((float)seen[0], (float)-seen[1]);
+    return std::min(angle, 360 - angle) < least ? -1 : angle;
+}
+
 void describe(std::vector<MapImage>& images, const ImageReader& read, const MapOptions& options, Steps& steps)
 {
     const Ptr<IIB> iib = describerOf(options.orbAndAkaze, options.points);
+    const Vec3d up = commonUp(images);
     std::vector<std::string> problems(images.size());
     inParallel(images.size(), [&](size_t i) {
         MapImage& image = images[i];
@@ -117,7 +157,7 @@ void describe(std::vector<MapImage>& images, const ImageReader& read, const MapO
             image.camera = upright.camera(image.camera);
             image.cameraFromWorld = upright.pose(image.cameraFromWorld);
             extract(*iib, upright.image(photograph.pixels), upright.image(photograph.mask), image,
-                    options.maxSize);
+                    options.maxSize, angleTo(up, image.cameraFromWorld));
         }
         image.codes.create(int(image.pixels.size()), iib->descriptorSize(), CV_8U);  // also of none
         if (!problem.empty())

@@ -89,14 +89,26 @@ std::shared_ptr<const PreparedImage> ImageViews::prepared(const View& view) cons
 const std::vector<Described>& ImageViews::few(const View& view, const std::vector<float>& angles) const
 {
     const std::lock_guard<std::mutex> lock(mutex_);
+    std::vector<Described>& found = few_[view];
+    if (found.empty())
+        found = describedAt(view, angles);
+    return found;
+}
+
+std::vector<Described> ImageViews::fewOnce(const View& view, const std::vector<float>& angles) const
+{
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return describedAt(view, angles);
+}
+
+//! Called under the lock.
+std::vector<Described> ImageViews::describedAt(const View& view, const std::vector<float>& angles) const
+{
     if (base_.empty())
     {
         base_ = searched().pixels(image_);
         baseMask_ = mask_.empty() ? Mat() : searched().mask(size(), mask_);
     }
-    std::vector<Described>& found = few_[view];
-    if (!found.empty())
-        return found;
     const Mat pixels = view.pixels(base_);
     const Ptr<IIBDescriptorExtractor> extractor = extractorOf(FEW);
     std::vector<KeyPoint> keypoints, all;
@@ -108,6 +120,7 @@ const std::vector<Described>& ImageViews::few(const View& view, const std::vecto
     }
     Mat codes;
     extractor->compute(pixels, all, codes);
+    std::vector<Described> found;
     const int n = (int)keypoints.size();
     for (int k = 0; k < (int)angles.size(); k++)
         found.push_back({{all.begin() + k * n, all.begin() + (k + 1) * n},

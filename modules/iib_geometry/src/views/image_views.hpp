@@ -55,6 +55,9 @@ public:
     //! The strongest points of a view, described at each of several angles, degrees or -1; for one image the same in all calls.
     const std::vector<Described>& few(const View& view, const std::vector<float>& angles) const;
 
+    //! The same, not kept.
+    std::vector<Described> fewOnce(const View& view, const std::vector<float>& angles) const;
+
     //! Where the views of few() show the image's pixels: large images are reduced before.
     Matx33d toFew(const View& view) const;
 
@@ -62,6 +65,7 @@ private:
     std::shared_ptr<const SeenView> look(const View& view, float angle, const Mat& mask) const;
 
     View searched() const;
+    std::vector<Described> describedAt(const View& view, const std::vector<float>& angles) const;
 
     const Mat image_, mask_;
     const int maxFeatures_;

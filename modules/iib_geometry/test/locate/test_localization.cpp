@@ -56,9 +56,47 @@ TEST_F(Localization, of_files_that_store_the_image_turned)
                 camera.project(inCamera(location.points, location.cameraFromWorld));
         for (size_t i = 0; i < seen.size(); i++)
             EXPECT_LT(cv::norm(seen[i] - location.pixels[i]), 2);
-        EXPECT_FALSE(localizer.localize(stored, camera).found);
+        const Location turned = localizer.localize(stored, camera);  // nobody says that it is
+        ASSERT_TRUE(turned.found) << turned.reason;
+        EXPECT_LT(cv::norm(inverse(turned.cameraFromWorld).translation() - TRUTH.translation()), 0.01);
     }
     EXPECT_NE("", messageOf([&] { localizer.localize(image, CAMERA, nullptr, 9); }));
+}
+
+cv::Affine3d rolled(const cv::Affine3d& worldFromCamera, double degrees)
+{
+    return worldFromCamera * cv::Affine3d(cv::Vec3d(0, 0, degrees * CV_PI / 180));
+}
+
+TEST_F(Localization, at_any_rotation_and_from_reduced_images)
+{
+    const Localizer localizer(folder.path("map"));
+    for (double degrees : {45., 200.})
+    {
+        const cv::Affine3d truth = rolled(TRUTH, degrees);
+        expectAt(truth, localizer.localize(wall.image(truth), CAMERA), .02);
+        const cv::Affine3d prior = inverse(truth);
+        EXPECT_FALSE(localizer.localize(Wall(9).image(truth), CAMERA).found);
+        EXPECT_FALSE(localizer.localize(wall.image(truth), CAMERA, &prior).found)
+                << "a prior excludes a search";
+    }
+    cv::Mat small;
+    cv::resize(wall.image(TRUTH), small, cv::Size(), .3, .3, cv::INTER_AREA);
+    expectAt(TRUTH, localizer.localize(small, CAMERA.resized(small.size())), .05);
+}
+
+TEST_F(Localization, in_a_map_of_rotated_photographs)
+{
+    std::vector<PosedImage> images;
+    for (int i = 0; i < 6; i++)
+        images.push_back({std::to_string(i), CAMERA,
+                inverse(rolled(poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i), i % 2 * 130)), {}, {}});
+    folder.makeFolder("rotated");
+    writeModel(folder.path("rotated"), images);
+    const Localizer localizer(folder.path("rotated"), [&](const std::string& name) {
+        return Photograph(wall.image(inverse(images[size_t(std::stoi(name))].cameraFromWorld)));
+    });
+    expectAt(TRUTH, localizer.localize(wall.image(TRUTH), CAMERA), .02);
 }
 
 TEST_F(Localization, looks_at_what_a_mask_allows)

@@ -124,7 +124,7 @@ Keypoints of each image are described, matched with those of the images that see
 (refineMatches), and triangulated with the model's poses, which stay as they are. The map holds 150 bytes a keypoint, and of each
 image its grey pixels, reduced to 1024 on the longer side: 0.3 MB for 640 x 480.
 @param model folder of a model, binary or text, in any unit and at any distance from its origin. Its points are not read: the
-images' keypoints tell which of them see the same.
+images' keypoints tell which of them see the same. Photographs that were rotated by any angle are described as upright ones, by their poses.
 @param images gives the model's images. Those that cannot be read or are of another size than their camera are left out.
 @param map folder to write: `map.iib`, and a COLMAP model of the same points. A map that is there is replaced: who reads
 meanwhile gets the old one or the new one. A folder that holds anything else is refused before work begins.
@@ -160,7 +160,11 @@ the pose with them. It needs fifteen inliers and two in a hundred matches more, 
 well are expected less than once in a thousand tries among wrong matches, counted in matches and in places as findRelativePose
 does), and a place that is known to a tenth of the distance to its points (three standard deviations). So images of places that are
 not in the map get none; how many were tried, and how many of a map's own places are found, is on the documentation's pages of maps
-and of uncertainties. */
+and of uncertainties.
+
+An image that has no pose after that, and no prior, is matched in views with the five images of the map that look most like it at any
+rotation (as matchViews, without tilts): so images rotated by any angle and seen from up to four times nearer or farther are found. That takes 5 to
+10 times as long as an upright image, and 20 times if the image is not found. */
 class CV_EXPORTS Localizer
 {
 public:
