@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from opencv_iib import __version__
 from opencv_iib._arguments import InvalidOption, MissingFile, Path, sequence
 from opencv_iib._exif import TIFF, exif_orientation, geo_entries, geo_entries_of_part, no_data
-from opencv_iib._files import check_folder, check_images, is_in, is_same, new_results, plan, read_bytes
+from opencv_iib._files import check_folder, check_images, is_in, is_same, new_results, read_bytes
 from opencv_iib._images import FORMATS, Masks, can_be, decode_pages, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
@@ -47,7 +47,6 @@ alt="{name}, aligned" loading="lazy" width="{width}" height="{height}"></div>
 INTERPOLATIONS = ('NEAREST', 'LINEAR', 'CUBIC', 'LANCZOS4')  #: of cv2, by their names there
 STATE = 'align.json'  #: what a later call goes on from
 VIEWS = 'views'  #: pictures that browsers show, of those that they do not
-TABLES = 'transforms.csv', 'index.html', STATE
 WARPED = tuple(map(np.dtype, ('u1', 'u2', 'i2', 'f4', 'f8')))  #: what cv2.warpPerspective takes
 LARGEST_SIDE = 32766  #: pixels that cv2.warpPerspective takes
 TOLD_ROTATION = 15  #: degrees: upright descriptors match images that are turned by less
@@ -132,8 +131,6 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     with new_results(out, 'align', STATE) as folder:
         done, old_part = _known(out, settings, stamps)
         known, names = list(done), _file_names(paths, done)
-        pictures = [stem + suffix for stem in ('reference', *names.values()) for suffix in FORMATS.values()]
-        plan(folder, [*TABLES, *pictures, *(f'{VIEWS}/{file}.jpg' for file in pictures)])
         part, progress = None if crop else work.whole, Progress('aligning', len(paths), len(done))
 
         def do(job: Callable[[str], Aligned], missing: list[str]) -> None:

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core, error
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._exif import exif_focal_length, exif_orientation
-from opencv_iib._files import check_folder, check_is_folder, check_outputs, new_results, plan, read_bytes, write_whole
+from opencv_iib._files import check_folder, check_is_folder, check_outputs, new_results, read_bytes, write_whole
 from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, is_utf8, read_grey, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
@@ -26,7 +26,6 @@ from opencv_iib.localization.imu_file import by_time, read_imu
 from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Location, as_camera
 from opencv_iib.localization.smoothing import smooth_poses
 
-WRITTEN = ('frames.csv', 'trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin')  #: beside pictures
 SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly, and COLMAP of a camera an image
 POSE = ('tx', 'ty', 'tz', 'qx', 'qy', 'qz', 'qw')  # the camera's centre, and camera to world
 FRAME = ('name', 'found', 'reason', 'matches', 'inliers')  # with which frames.csv begins
@@ -289,8 +288,6 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
         last = location.cam_from_world if sequence else None
         return location
     with contextlib.nullcontext('') if table_alone else new_results(out, 'localize') as part:
-        if part:
-            plan(part, [*WRITTEN, *(f'matches/{label}.png' for label in labels.values())])
         localizer = _localizer(map, 0, lines)
         find = _finder(localizer, max_size)
         for name, own, location in locate(find_next, localizer.cameras, images, names, given, workers, log, exif, mask):
