@@ -202,13 +202,16 @@ def exif_focal_length(data: bytes, width: int, height: int) -> Optional[float]:
 
 
 def gps_place(path: str) -> Optional[np.ndarray]:
-    """Where a file's EXIF data say that it was taken, metres from the Earth's centre; None if they do not."""
+    """Where a file's EXIF data say that it was taken, metres: on the Earth's sphere from its centre, and the height (NaN where they tell none);
+    None if they do not, or say 0, 0, which cameras without a signal write."""
     try:
         tiff = _exif(read_bytes(path))
         gps = _directory(tiff, int(_number(_first_directory(tiff), GPS_IFD, NOWHERE)))[0]
         latitude, longitude = (np.radians(np.dot(gps[tag], (1, 1 / 60, 1 / 3600)) * (-1 if gps.get(ref) in ('S', 'W') else 1))
                                for tag, ref in ((LATITUDE, LATITUDE_REF), (LONGITUDE, LONGITUDE_REF)))
-        height = _number(gps, ALTITUDE, 0) * (-1 if _number(gps, ALTITUDE_REF, 0) == 1 else 1)
+        height = _number(gps, ALTITUDE, np.nan) * (-1 if _number(gps, ALTITUDE_REF, 0) == 1 else 1)
     except (struct.error, KeyError, TypeError, ValueError, OSError):
         return None
-    return np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)]) * float(EARTH + height)
+    if not (latitude or longitude):
+        return None
+    return EARTH * np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude), height / EARTH])

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import io
 import os
 import re
@@ -42,12 +43,10 @@ def in_order(name: str) -> tuple[list[tuple[int, str]], str]:
 
 
 def stamp(path: str) -> str:
-    """Size and time of a file: others if it was changed."""
-    try:
-        status = os.stat(path)
-    except OSError:
-        return ''
-    return f'{status.st_size} {status.st_mtime_ns}'
+    """Of a file's content, whatever its time; '' of a file that cannot be read."""
+    with contextlib.suppress(OSError, ValueError):
+        return hashlib.blake2b(read_bytes(path), digest_size=16).hexdigest()
+    return ''
 
 
 def is_utf8(name: str) -> bool:

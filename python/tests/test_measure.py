@@ -128,7 +128,12 @@ class Match(Commands):
         for expected in (True, False):
             with mock.patch('opencv_iib.measure.show_the_same', return_value=expected) as verdict:
                 status, out, _ = run_command('match', a, b, '--out', self.folder / 'm.json')
-            self.assertEqual((verdict.call_count, 'may not show the same' in out, status), (1 if expected else 2, not expected, 0 if expected else 3))
+                found = match_images(a, b)
+                for suffix in ('csv', 'npz'):
+                    found.save(self.folder / f'm.{suffix}')
+                self.assertEqual({json.loads((self.folder / 'm.json').read_text())['found'], bool(np.load(self.folder / 'm.npz')['found']),
+                                  *(row['found'] == '1' for row in self.rows('m.csv'))}, {expected})
+            self.assertEqual((verdict.call_count // 2, 'may not show the same' in out, status), (1 if expected else 2, not expected, 0 if expected else 3))
 
     def test_nothing_found_and_mistakes(self):
         a, flat = self.write('a.png', self.world((4, 4))), self.write('flat.png', np.zeros((360, 480), np.uint8))
@@ -142,6 +147,10 @@ class Match(Commands):
                                 (['--camera', 'simple_pinhole,480,360,400,240,180'] * 3, '3 cameras'),
                                 (['--picture', self.folder / 'no.suffix'], 'end its name')):
             self.check_mistake(told, 'match', a, a, '--out', out, *arguments)
+        for name in ('x.h5', 'x.png', 'x.npy', 'x.parquet', 'x'):
+            self.check_mistake('end its name in .csv, .json or .npz', 'match', a, a, '--out', self.folder / name)
+            self.assertFalse((self.folder / name).exists())
+        self.assertEqual(run_command('match', a, '--out', '/dev/null', a)[0], 0)
 
     def test_what_is_written_is_what_was_measured(self):
         picture = cv2.resize(texture(200, 150, seed=4), (6200, 300), interpolation=cv2.INTER_CUBIC)
@@ -355,6 +364,9 @@ class Align(Commands):
         self.assertEqual([row['file'] for row in rows], ['a.png', 'b.png', 'c.png', 'd.png'])
         self.assertEqual((self.folder / 'out/a.png').stat().st_ino, first)
         os.utime(paths[1], (1, 1))
+        self.align(*paths, calls=0)
+        with open(paths[1], 'ab') as file:
+            file.write(b'more')
         self.align(*paths, calls=1)
         self.align(*paths, '--model', 'affine', calls=4)
         self.assertEqual(len(self.align(*paths[:2], '--model', 'affine', calls=0)), 1)

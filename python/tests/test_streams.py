@@ -115,7 +115,7 @@ class Commands(InFolder):
 
     @unittest.skipIf(shutil.which('bash') is None, 'no bash')
     def test_what_is_not_open_is_told_before_work(self):
-        for out, closed in (('-', '>&-'), ('/dev/stdout', '>&-'), ('/dev/stderr', '2>&-'), ('/dev/fd/77', ''), ('/dev/fd/5', '5</dev/null'),
+        for out, closed in (('-', '>&-'), ('/dev/stdout', '>&-'), ('/dev/stderr', '2>&-'), ('/dev/fd/77', ''),
                             ('/dev/fd/99999999999', '')):
             done = subprocess.run(['bash', '-c', f'{sys.executable} -m opencv_iib match {self.a} {self.a} --out {out} {closed}'], capture_output=True)
             self.assertEqual((done.returncode, done.stdout), (2, b''), out)
@@ -171,7 +171,9 @@ class Mistakes(InFolder):
                 ('invalid choice', 'match', 'a', 'b', '--detector', 'eyes'), ('ratio is 2', 'colmap', self.folder, 'x.db', '--ratio', '2'),
                 ('focal is -1', 'colmap', self.folder, 'x.db', '--focal=-1'), ('neither a file nor one of', 'colmap', self.folder, 'x.db', '--pairs', 'none'),
                 ('invalid choice', 'colmap', self.folder, 'x.db', '--verify', 'no'), ('workers is 0', 'colmap', self.folder, 'x.db', '--workers', '0'),
-                ('workers is 0', 'localize', '--map', 'm', *place, '--workers', '0'), ('arguments are required', 'update')):
+                ('workers is 0', 'localize', '--map', 'm', *place, '--workers', '0'),
+                ('workers is 0', 'match', 'a', 'b', '--workers', '0'), ('workers is 0', 'localize', '--map', 'm', '--images', '-', '--workers', '0'),
+                ('unrecognized arguments: --wrong', 'align', 'a', '--out', 'c', 'b', '--wrong'), ('unrecognized arguments: d', 'demo', 'a', 'b', 'd'), ('arguments are required', 'update')):
             with self.subTest(arguments):
                 status, out, errors = run_command(*arguments)
                 self.assertEqual((status, out), (2, ''))

@@ -57,16 +57,25 @@ UNCALIBRATED = 3  # COLMAP's TwoViewGeometry::UNCALIBRATED
 class SettingsChanged(ValueError):
     """A database cannot be gone on with: it was begun with other settings or images."""
 
-    def __init__(self, path: str, settings: str) -> None:
-        super().__init__(f'{path} was begun with other settings, {settings}: go on as it was begun, or begin anew with force (--force)')
+    def __init__(self, path: str, differences: str) -> None:
+        """:param differences: names of settings with both values."""
+        super().__init__(f'{path} was begun with other settings ({differences}): go on as it was begun, or begin anew with force (--force)')
 
 
-def settings_of(path: str) -> Optional[str]:
+def check_settings(path: str, old: dict[str, Any], new: dict[str, Any]) -> None:
+    """:raises SettingsChanged: if they differ in more than the folder of the images, which may have been moved."""
+    old, new = ({'images': '', **json.loads(json.dumps(settings))} for settings in (old, new))
+    different = [name for name in {**old, **new} if name != 'images' and old.get(name) != new.get(name)]
+    if different:
+        raise SettingsChanged(path, ', '.join(f'{name} {old.get(name)}, now {new.get(name)}' for name in different))
+
+
+def settings_of(path: str) -> Optional[dict[str, Any]]:
     """What a finished database was made with; None of another file."""
     try:
         with contextlib.closing(sqlite3.connect(f'{pathlib.Path(path).absolute().as_uri()}?mode=ro', uri=True)) as db:
-            return str(db.execute('SELECT settings FROM iib_settings').fetchone()[0])
-    except (sqlite3.Error, TypeError):
+            return dict(json.loads(db.execute('SELECT settings FROM iib_settings').fetchone()[0]))
+    except (sqlite3.Error, TypeError, ValueError):
         return None
 
 
@@ -86,6 +95,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         :raises FileExistsError: for a file that no such run has left.
         """
         self.path, self.partial, self._finished = path, path + '.partial', False
+        self.folder = settings.get('images')  #: of the images, when the database was begun
         if not os.path.exists(self.partial) or not os.path.getsize(self.partial):
             for log in LOGS:
                 if os.path.lexists(self.partial + log):
@@ -100,7 +110,9 @@ class Database(contextlib.AbstractContextManager['Database']):
                     os.unlink(self.partial + log)
             os.truncate(self.partial, 0)  # the same file: it may be locked
             self._open(settings)
-        if not force and os.path.exists(path) and not self.stamps():
+        if force:
+            self.folder = settings.get('images')
+        elif os.path.exists(path) and not self.stamps():
             self._grow()
 
     def _refuse(self, log: str = '') -> NoReturn:
@@ -125,12 +137,13 @@ class Database(contextlib.AbstractContextManager['Database']):
         self._db.executescript(SCHEMA)
         if self._db.execute('PRAGMA user_version').fetchone()[0] == 0:  # not where a newer COLMAP has been at it
             self._db.execute(f'PRAGMA user_version={SCHEMA_VERSION}')
-        text = json.dumps(settings, sort_keys=True)
         row = self._db.execute('SELECT settings FROM iib_settings').fetchone()
         if row is None:
-            self._db.execute('INSERT INTO iib_settings VALUES (?)', (text,))
-        elif row[0] != text:
-            raise SettingsChanged(self.partial, row[0])
+            self._db.execute('INSERT INTO iib_settings VALUES (?)', (json.dumps(settings, sort_keys=True),))
+        else:
+            old = json.loads(row[0])
+            check_settings(self.partial, old, settings)
+            self.folder = old.get('images')
 
     def _grow(self) -> None:
         """Takes what the finished database holds, but not what a newer COLMAP has made of it when it opened it."""
@@ -141,6 +154,7 @@ class Database(contextlib.AbstractContextManager['Database']):
                                    ('two_view_geometries', 'pair_id, rows, cols, data, config, F, E, H, qvec, tvec'), ('iib_files', 'name, stamp')):
                 self._db.execute(f'INSERT INTO {table} ({columns}) SELECT {columns} FROM old.{table}')
         self._db.execute('DETACH old')
+        self.folder = (settings_of(self.path) or {}).get('images')
 
     def __exit__(self, *exc: Any) -> None:
         """Closes the file, and removes it if there is nothing to go on from."""
@@ -174,15 +188,18 @@ class Database(contextlib.AbstractContextManager['Database']):
     def forget(self, name: str) -> None:
         """Removes an image and its pairs."""
         with self._transaction():
-            image, camera = self._db.execute('SELECT image_id, camera_id FROM images WHERE name=?', (name,)).fetchone()
-            self._db.execute('DELETE FROM iib_files WHERE name=?', (name,))
-            for table in ('images', 'keypoints', 'iib_codes'):
-                self._db.execute(f'DELETE FROM {table} WHERE image_id=?', (image,))
-            for table in ('matches', 'two_view_geometries'):
-                self._db.execute(f'DELETE FROM {table} WHERE ? IN (pair_id / {MAX_IMAGE_ID}, pair_id % {MAX_IMAGE_ID})',
-                                 (image,))
-            self._db.execute('DELETE FROM cameras WHERE camera_id=? AND camera_id NOT IN (SELECT camera_id FROM images)',
-                             (camera,))
+            self._remove(name)
+
+    def _remove(self, name: str) -> tuple[Optional[int], Optional[int]]:
+        """:return: numbers that have become free: of the image, and of its camera if no other image has it."""
+        image, camera = self._db.execute('SELECT image_id, camera_id FROM images WHERE name=?', (name,)).fetchone() or (None, None)
+        self._db.execute('DELETE FROM iib_files WHERE name=?', (name,))
+        for table in ('images', 'keypoints', 'iib_codes'):
+            self._db.execute(f'DELETE FROM {table} WHERE image_id=?', (image,))
+        for table in ('matches', 'two_view_geometries'):
+            self._db.execute(f'DELETE FROM {table} WHERE ? IN (pair_id / {MAX_IMAGE_ID}, pair_id % {MAX_IMAGE_ID})', (image,))
+        free = self._db.execute('DELETE FROM cameras WHERE camera_id=? AND camera_id NOT IN (SELECT camera_id FROM images)', (camera,)).rowcount
+        return image, camera if free else None
 
     def image_ids(self) -> dict[str, int]:
         """Numbers of the images by name, in_order."""
@@ -204,7 +221,7 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     def add_image(self, name: str, stamp: str, width: int, height: int, model: str, params: Sequence[float], prior: bool,
                   shared: bool, keypoints: np.ndarray, codes: np.ndarray) -> None:
-        """An image with its camera, keypoints and codes, in one transaction.
+        """An image with its camera, keypoints and codes, in one transaction. One of this name that is there is replaced, and its numbers are kept.
 
         :param stamp: tells whether the file is the same later.
         :param model: one of MODELS.
@@ -214,12 +231,13 @@ class Database(contextlib.AbstractContextManager['Database']):
         """
         values = MODELS.index(model), width, height, np.array(params, np.float64).tobytes(), int(prior)
         with self._transaction():
+            number, free = self._remove(name)
             same = self._db.execute('SELECT camera_id FROM cameras WHERE (model, width, height, params, prior_focal_length) = '
                                     '(?, ?, ?, ?, ?)', values).fetchone() if shared else None
             camera = same[0] if same else self._db.execute(
-                'INSERT INTO cameras (model, width, height, params, prior_focal_length) VALUES (?, ?, ?, ?, ?)',
-                values).lastrowid
-            image = self._db.execute('INSERT INTO images (name, camera_id) VALUES (?, ?)', (name, camera)).lastrowid
+                'INSERT INTO cameras (camera_id, model, width, height, params, prior_focal_length) VALUES (?, ?, ?, ?, ?, ?)',
+                (free, *values)).lastrowid
+            image = self._db.execute('INSERT INTO images (image_id, name, camera_id) VALUES (?, ?, ?)', (number, name, camera)).lastrowid
             self._db.execute('INSERT INTO keypoints VALUES (?, ?, ?, ?)',
                              (image, *keypoints.shape, np.ascontiguousarray(keypoints, np.float32).tobytes()))
             self._db.execute('INSERT INTO iib_codes VALUES (?, ?, ?, ?)', (image, *codes.shape, codes.tobytes()))
