@@ -3,10 +3,11 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import stat
 from contextlib import contextmanager, suppress
-from typing import Any, Iterable, Iterator
+from typing import Any, Collection, Iterable, Iterator
 
 from opencv_iib import _core
 from opencv_iib._arguments import MissingFile, Path, TakenFile, UnusableName
@@ -137,6 +138,16 @@ def replaced(*paths: str) -> Iterator[list[str]]:
     finally:
         for part in parts:
             part.discard()
+
+
+def remove_parts(paths: Collection[str]) -> None:
+    """What killed processes were writing, to be put in place of these files. No other may be writing them now."""
+    for folder in {os.path.dirname(path) for path in paths}:
+        with suppress(FileNotFoundError):
+            for name in os.listdir(folder):
+                whole = re.fullmatch(r'(.*)\.\d+-\d+\.tmp', name)
+                if whole and os.path.join(folder, whole[1]) in paths:
+                    os.unlink(os.path.join(folder, name))
 
 
 @contextmanager

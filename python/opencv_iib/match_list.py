@@ -17,7 +17,7 @@ import numpy as np
 from opencv_iib import __version__
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._camera import AnyCamera, Camera, as_camera
-from opencv_iib._files import check_folder, check_is_folder, check_outputs, only_writer, output_file, replaced, write_whole
+from opencv_iib._files import check_folder, check_is_folder, check_outputs, only_writer, output_file, remove_parts, replaced, write_whole
 from opencv_iib._hdf5 import import_h5py, new_hdf5
 from opencv_iib._images import Masks, check_sizes, find_images
 from opencv_iib._pairs import check_list, pair_name, tiles
@@ -100,9 +100,9 @@ class _Folder:
         for part in name.split('/'):
             with contextlib.suppress(FileNotFoundError):
                 os.lstat(os.path.join(self._path, part + '.csv'))
-        is_there = os.path.lexists(self._name(name))
+        is_there = os.path.lexists(self.file(name))
         if is_there and not own:
-            raise FileExistsError(f'{self._name(name)} is there, and of no pair of {TABLE}: move it away, or choose another folder')
+            raise FileExistsError(f'{self.file(name)} is there, and of no pair of {TABLE}: move it away, or choose another folder')
         return is_there
 
     def content(self, measured: Measured) -> bytes:
@@ -111,16 +111,16 @@ class _Folder:
     def export(self, state: _State, gone: Collection[str]) -> None:
         for name in gone:
             with contextlib.suppress(OSError):  # the file of another pair may be beside it
-                os.unlink(self._name(name))
-                os.rmdir(os.path.dirname(self._name(name)))
+                os.unlink(self.file(name))
+                os.rmdir(os.path.dirname(self.file(name)))
         for name, content in state.contents():
-            os.makedirs(os.path.dirname(self._name(name)), exist_ok=True)
-            write_whole(self._name(name), content)
+            os.makedirs(os.path.dirname(self.file(name)), exist_ok=True)
+            write_whole(self.file(name), content)
         text = io.StringIO(newline='')
         csv.writer(text).writerows([COLUMNS, *(row for name, row in {**self.rows, **state.rows()}.items() if name not in gone)])
         write_whole(self._table, text.getvalue().encode())
 
-    def _name(self, name: str) -> str:
+    def file(self, name: str) -> str:
         return os.path.join(self._path, name + '.csv')
 
 
@@ -140,9 +140,17 @@ class _Hdf5:
                 raise OSError(f'{path} is no HDF5 file that can be read: {e}') from None
             if 'opencv_iib' not in self._old.attrs:
                 raise FileExistsError(f'{path} is there, and not of this command: choose another name')
-            for name in (f'{a}/{b}' for a in self._old for b in self._old[a]):
+            for name in self._names():
                 known = self._old[name].attrs
-                self.rows[name] = ['', '', f'{known["found"]:d}', *known['mark']]
+                if 'mark' in known:
+                    self.rows[name] = ['', '', f'{known["found"]:d}', *known['mark']]
+
+    def _names(self) -> list[str]:
+        """Of pairs, and of what the user may have added."""
+        return [name for first, group in self._old.items() for name in ([f'{first}/{each}' for each in group] if hasattr(group, 'keys') else [first])]
+
+    def file(self, name: str) -> str:
+        return self._path
 
     def check(self, name: str, own: bool) -> bool:
         """As of _Folder, by any name."""
@@ -159,8 +167,9 @@ class _Hdf5:
         rows = state.rows()
         with replaced(self._path) as (part,), new_hdf5(part) as file:
             file.attrs['opencv_iib'] = 'match'
-            for name in self.rows.keys() - rows.keys() - set(gone):
-                self._old.copy(name, file.require_group(name.partition('/')[0]))
+            for name in self._names():
+                if name not in rows and name not in gone:
+                    self._old.copy(name, file.require_group(os.path.dirname(name) or '/'))
             for name, content in state.contents():
                 group, row = file.create_group(name), dict(zip(COLUMNS, rows[name]))
                 with np.load(io.BytesIO(content)) as arrays:
@@ -226,6 +235,7 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
         state = stack.enter_context(_State(file + PARTIAL))
         measured = state.rows()
         known = {**target.rows, **measured}
+        remove_parts({file, *map(target.file, measured)})
         for pair, label in labels.items():
             row = known.get(label, [])
             try:

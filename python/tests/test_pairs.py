@@ -72,7 +72,7 @@ class Lists(Collection):
         """Of pairs.csv or a file in HDF5: each pair, and whether it is found."""
         if out.suffix == '.h5':
             with h5py.File(out) as file:
-                return [(first, second, bool(file[first][second].attrs['found'])) for first in file for second in file[first]]
+                return [(first, second, bool(file[first][second].attrs['found'])) for first in file if first[1] == '.' for second in file[first]]
         with open(out / 'pairs.csv', newline='') as file:
             return [(row['image_a'], row['image_b'], row['found'] == '1') for row in csv.DictReader(file)]
 
@@ -85,6 +85,9 @@ class Lists(Collection):
                 shutil.copy(self.images / 'more/c.png', self.images / 'd.png')
                 self.match(out, text)
                 size = out.stat().st_size
+                if name == 'x.h5':
+                    with h5py.File(out, 'a') as file:
+                        file['mine'] = file['more/notes'] = [1, 2]
                 self.match(out, text, 0, '--preset', 'SMALL', described=['a.png', 'b.png', 'd.png'])
                 self.match(out, text, described=['a.png', 'b.png', 'd.png'])
                 shutil.copy(self.images / 'a.png', self.images / 'd.png')  # other content
@@ -96,6 +99,8 @@ class Lists(Collection):
                 self.assertEqual(self.rows(out), [('a.png', 'b.png', True)])
                 if name == 'x.h5':
                     self.assertLess(out.stat().st_size, size)
+                    with h5py.File(out) as file:
+                        self.assertEqual((file['mine'][1], file['more/notes'][1]), (2, 2), 'what the user added')
                 else:
                     self.assertEqual(sorted(path.name for path in out.rglob('*') if path.is_file()), ['b.png.csv', 'pairs.csv'])
 
@@ -116,7 +121,11 @@ class Lists(Collection):
                     status, _, errors = run_command('match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', out, '--points', 300,
                                                     '--workers', 1)
                 self.assertEqual((status, errors.splitlines()[-1]), (130, 'interrupted; the same command goes on from here'))
+                mine, left = out.with_name('mine.12-3.tmp'), {'one': out / 'pairs.csv.12-3.tmp', 'two': out / 'a.png/more-c.png.csv.12-3.tmp'}
+                for path in (mine, left.get(name, self.folder / 'x.h5.12-3.tmp')):
+                    path.touch()  # as kill -9 leaves the second
                 self.match(out, described=['a.png', 'b.png'] if name == 'one' else [])
+                mine.unlink()
                 self.assertEqual(sorted(self.rows(out)), [('a.png', 'b.png', True), ('a.png', 'more-c.png' if name == 'x.h5' else 'more/c.png', True)])
                 self.assertEqual([path for path in self.folder.rglob('*.partial*')] + [path for path in self.folder.rglob('*.tmp')], [])
         (self.folder / 'new').mkdir()

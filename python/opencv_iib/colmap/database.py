@@ -63,11 +63,10 @@ class SettingsChanged(ValueError):
 
 
 def check_settings(path: str, old: dict[str, Any], new: dict[str, Any]) -> None:
-    """:raises SettingsChanged: if they differ in more than the folder of the images, which may have been moved."""
-    old, new = ({'images': '', **json.loads(json.dumps(settings))} for settings in (old, new))
-    different = [name for name in {**old, **new} if name != 'images' and old.get(name) != new.get(name)]
+    """:raises SettingsChanged: if they differ."""
+    different = [f'{name} {old.get(name)}, now {new.get(name)}' for name in {**old, **new} if old.get(name) != new.get(name)]
     if different:
-        raise SettingsChanged(path, ', '.join(f'{name} {old.get(name)}, now {new.get(name)}' for name in different))
+        raise SettingsChanged(path, ', '.join(different))
 
 
 def settings_of(path: str) -> Optional[dict[str, Any]]:
@@ -94,8 +93,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         :raises SettingsChanged: if these had other settings.
         :raises FileExistsError: for a file that no such run has left.
         """
-        self.path, self.partial, self._finished = path, path + '.partial', False
-        self.folder = settings.get('images')  #: of the images, when the database was begun
+        self.path, self.partial, self.force, self._finished = path, path + '.partial', force, False
         if not os.path.exists(self.partial) or not os.path.getsize(self.partial):
             for log in LOGS:
                 if os.path.lexists(self.partial + log):
@@ -110,9 +108,7 @@ class Database(contextlib.AbstractContextManager['Database']):
                     os.unlink(self.partial + log)
             os.truncate(self.partial, 0)  # the same file: it may be locked
             self._open(settings)
-        if force:
-            self.folder = settings.get('images')
-        elif os.path.exists(path) and not self.stamps():
+        if not force and os.path.exists(path) and not self.stamps():
             self._grow()
 
     def _refuse(self, log: str = '') -> NoReturn:
@@ -141,9 +137,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         if row is None:
             self._db.execute('INSERT INTO iib_settings VALUES (?)', (json.dumps(settings, sort_keys=True),))
         else:
-            old = json.loads(row[0])
-            check_settings(self.partial, old, settings)
-            self.folder = old.get('images')
+            check_settings(self.partial, json.loads(row[0]), settings)
 
     def _grow(self) -> None:
         """Takes what the finished database holds, but not what a newer COLMAP has made of it when it opened it."""
@@ -154,7 +148,6 @@ class Database(contextlib.AbstractContextManager['Database']):
                                    ('two_view_geometries', 'pair_id, rows, cols, data, config, F, E, H, qvec, tvec'), ('iib_files', 'name, stamp')):
                 self._db.execute(f'INSERT INTO {table} ({columns}) SELECT {columns} FROM old.{table}')
         self._db.execute('DETACH old')
-        self.folder = (settings_of(self.path) or {}).get('images')
 
     def __exit__(self, *exc: Any) -> None:
         """Closes the file, and removes it if there is nothing to go on from."""

@@ -64,14 +64,9 @@ class Options:
 
     def _settings(self) -> dict[str, Any]:
         """What a database depends on, with one text for each meaning. Masks are known by the files of the images."""
-        def one(camera: str) -> str:
-            return str(Camera.parse(camera))
-
-        features = dataclasses.asdict(self.features)
-        del features['mask']
-        own = {**{field.name: getattr(self, field.name) for field in dataclasses.fields(self)}, **features}
-        return {**own, 'features': None, 'pairs': os.path.basename(self.pairs), 'camera': None if self.camera is None else one(self.camera),
-                'camera_of': sorted(folder + '=' + one(camera) for folder, camera in self._cameras_of())}
+        cameras = sorted(f'{folder}={Camera.parse(camera)}' for folder, camera in self._cameras_of())
+        return {**vars(self), **vars(self.features), 'features': None, 'mask': None, 'pairs': os.path.basename(self.pairs),
+                'camera': self.camera and str(Camera.parse(self.camera)), 'camera_of': cameras}
 
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
@@ -146,8 +141,8 @@ def describe_images(database: Database, folder: str, names: Sequence[str], optio
     stamps = {name: masks.stamp(os.path.join(folder, name), name) for name in names}
     done = database.stamps()
     missing = [name for name in stamps if done.get(name) != stamps[name]]
-    if done and len(missing) == len(stamps) and database.folder != os.path.abspath(folder):
-        raise SettingsChanged(database.path, f'images of {database.folder}')
+    if done and len(missing) == len(stamps) and not database.force:
+        raise SettingsChanged(database.path, f'other images, none of which is in {folder}')
     for name in done.keys() - stamps.keys():
         database.forget(name)
     failed = 0
@@ -326,7 +321,7 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     cameras = {name: options.camera_for(name) for name in names}
     for camera in dict.fromkeys(filter(None, cameras.values())):
         check_sizes(images, [name for name in names if cameras[name] == camera], Masks(None), camera)
-    settings = {**options._settings(), 'verify': verify, 'images': os.path.abspath(images), 'version': opencv_iib.__version__}
+    settings = {**options._settings(), 'verify': verify, 'version': opencv_iib.__version__}
     if os.path.exists(database) and not force:
         made = settings_of(database)
         if made is None:
