@@ -276,9 +276,12 @@ def check_sizes(folder: Path, names: Sequence[str], masks: Masks, camera: Any) -
 
 
 def check_picture(path: Path) -> None:
-    """:raises InvalidOption: for a suffix of no format that cv2 writes."""
-    if not import_cv2().haveImageWriter('x' + os.path.splitext(os.fspath(path))[1]):
-        raise InvalidOption(f'{path}: end its name in .png or .jpg')
+    """:raises InvalidOption: for a suffix of no format in which cv2 writes pictures of three channels."""
+    cv2 = import_cv2()
+    with contextlib.suppress(cv2.error):
+        if cv2.imencode(os.path.splitext(os.fspath(path))[1], np.zeros((64, 64, 3), np.uint8))[0]:
+            return
+    raise InvalidOption(f'{path}: end its name in .png or .jpg')
 
 
 def write_picture(path: Path, picture: np.ndarray, *pages: np.ndarray, no_data: str = '', geo: Sequence[Entry] = ()) -> None:

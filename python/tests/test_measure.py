@@ -145,7 +145,7 @@ class Match(Commands):
         self.check_mistake('no folder', 'match', a, a, '--out', self.folder / 'none/m.csv')
         for arguments, told in ((['--camera', 'PINHOLE,480,360,400'], 'PINHOLE'), (['--camera', 'PINHOLE,9,9,400,400,240,180'], '480 x 360'),
                                 (['--camera', 'simple_pinhole,480,360,400,240,180'] * 3, '3 cameras'),
-                                (['--picture', self.folder / 'no.suffix'], 'end its name')):
+                                *((['--picture', self.folder / name], 'end its name') for name in ('no.suffix', 'x.exr', 'x.pgm'))):
             self.check_mistake(told, 'match', a, a, '--out', out, *arguments)
         for name in ('x.h5', 'x.png', 'x.npy', 'x.parquet', 'x'):
             self.check_mistake('end its name in .csv, .json or .npz', 'match', a, a, '--out', self.folder / name)
