@@ -8,7 +8,6 @@ import io
 import json
 import os
 import re
-import sqlite3
 import threading
 from typing import Any, Callable, Collection, Iterator, Optional, Union
 
@@ -22,6 +21,7 @@ from opencv_iib._hdf5 import import_h5py, new_hdf5
 from opencv_iib._images import Masks, check_sizes, find_images
 from opencv_iib._pairs import check_list, pair_name, tiles
 from opencv_iib._parallel import Threads, in_parallel, thread_count
+from opencv_iib._partial import open_partial, remove_logs
 from opencv_iib._progress import Progress
 from opencv_iib._streams import is_open_file, note
 from opencv_iib.features import FeatureOptions, Features
@@ -44,17 +44,10 @@ def _row(a: str, b: str, measured: Measured, mark: Row) -> Row:
 
 
 class _State(contextlib.AbstractContextManager['_State']):
-    """What was measured and is not yet in its place, by the pairs' names: a file of SQLite, which neither a kill nor a full disk harms."""
+    """What was measured and is not yet in its place, by the pairs' names."""
 
     def __init__(self, path: str) -> None:
-        self._path, self._db, self.exported = path, sqlite3.connect(os.fsencode(path), isolation_level=None), False
-        try:
-            tables = {name for name, in self._db.execute("SELECT name FROM sqlite_master WHERE type='table'")}
-        except sqlite3.DatabaseError:
-            tables = {''}
-        if tables - {'iib_pairs'}:
-            self._db.close()
-            raise FileExistsError(f'{path} is there and not of an unfinished run: move it away, or choose another name')
+        self._path, self._db, self.exported = path, open_partial(path, 'iib_pairs'), False
         self._db.execute('CREATE TABLE IF NOT EXISTS iib_pairs (name TEXT PRIMARY KEY, row TEXT, content BLOB)')
 
     def rows(self) -> dict[str, Row]:
@@ -74,6 +67,7 @@ class _State(contextlib.AbstractContextManager['_State']):
         useless = self.exported or not self.rows()
         self._db.close()
         if useless:
+            remove_logs(self._path)
             os.unlink(self._path)
 
 

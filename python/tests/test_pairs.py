@@ -129,9 +129,10 @@ class Lists(Collection):
                 self.assertEqual(sorted(self.rows(out)), [('a.png', 'b.png', True), ('a.png', 'more-c.png' if name == 'x.h5' else 'more/c.png', True)])
                 self.assertEqual([path for path in self.folder.rglob('*.partial*')] + [path for path in self.folder.rglob('*.tmp')], [])
         (self.folder / 'new').mkdir()
-        (self.folder / 'new/pairs.csv.partial').write_bytes(b'precious' * 1000)
-        self.match(self.folder / 'new', status=1)
-        self.assertEqual((self.folder / 'new/pairs.csv.partial').read_bytes(), b'precious' * 1000)
+        for out, name in (('new', 'new/pairs.csv.partial'), ('new.h5', 'new.h5.partial-journal'))[:1 + (h5py is not None)]:
+            (self.folder / name).write_bytes(b'precious' * 1000)
+            self.match(self.folder / out, status=1)
+            self.assertEqual((self.folder / name).read_bytes(), b'precious' * 1000)
 
     @unittest.skipIf(h5py is None, 'no h5py')
     def test_a_full_disk_is_one_line(self):

@@ -10,16 +10,16 @@ import json
 import os
 import pathlib
 import sqlite3
-from typing import Any, Iterator, NoReturn, Optional, Sequence
+from typing import Any, Iterator, Optional, Sequence
 
 import numpy as np
 
 from opencv_iib._files import replaced
 from opencv_iib._images import in_order
+from opencv_iib._partial import open_partial, remove_logs
 
 SCHEMA_VERSION = 3800
 MAX_IMAGE_ID = 2147483647
-LOGS = ('-wal', '-shm', '-journal')  # that SQLite writes beside a database
 
 SCHEMA = '''
 CREATE TABLE IF NOT EXISTS iib_settings (settings TEXT NOT NULL);
@@ -94,42 +94,26 @@ class Database(contextlib.AbstractContextManager['Database']):
         :raises FileExistsError: for a file that no such run has left.
         """
         self.path, self.partial, self.force, self._finished = path, path + '.partial', force, False
-        if not os.path.exists(self.partial) or not os.path.getsize(self.partial):
-            for log in LOGS:
-                if os.path.lexists(self.partial + log):
-                    self._refuse(log)
         try:
             self._open(settings)
         except SettingsChanged:
             if not force:
                 raise
-            for log in LOGS:
-                with contextlib.suppress(FileNotFoundError):
-                    os.unlink(self.partial + log)
+            remove_logs(self.partial)
             os.truncate(self.partial, 0)  # the same file: it may be locked
             self._open(settings)
         if not force and os.path.exists(path) and not self.stamps():
             self._grow()
 
-    def _refuse(self, log: str = '') -> NoReturn:
-        raise FileExistsError(f'{self.partial}{log} is there and not of an unfinished run: remove it, or give the database another name')
-
     def _open(self, settings: dict[str, Any]) -> None:
-        self._db = sqlite3.connect(os.fsencode(self.partial), isolation_level=None)
+        self._db = open_partial(self.partial, 'iib_settings')
         try:
             self._begin(settings)
-        except Exception as e:
+        except Exception:
             self._db.close()
-            if type(e) is not sqlite3.DatabaseError:  # a full disk is a more special one
-                raise
-            self._refuse()
+            raise
 
     def _begin(self, settings: dict[str, Any]) -> None:
-        tables = {name for name, in self._db.execute('SELECT name FROM sqlite_master')}
-        if tables and 'iib_settings' not in tables:
-            self._refuse()
-        self._db.execute('PRAGMA journal_mode=WAL')
-        self._db.execute('PRAGMA synchronous=NORMAL')
         self._db.executescript(SCHEMA)
         if self._db.execute('PRAGMA user_version').fetchone()[0] == 0:  # not where a newer COLMAP has been at it
             self._db.execute(f'PRAGMA user_version={SCHEMA_VERSION}')
@@ -154,6 +138,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         useless = self._finished or not self.stamps()
         self._db.close()
         if useless:
+            remove_logs(self.partial)
             os.unlink(self.partial)
 
     def finish(self) -> None:
