@@ -79,8 +79,6 @@ if(IIB_PYTHON)
     "${CMAKE_CXX_COMPILER}" "${CMAKE_CXX_FLAGS}" "${CMAKE_GENERATOR}")
   add_test(NAME includes COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/includes_test.py" "${IIB_DIR}"
     "${PROJECT_SOURCE_DIR}/modules/iib_index" "${IIB_GEOMETRY_DIR}")
-  add_test(NAME api COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/cpp_api.py" --check)
-  add_test(NAME api-test COMMAND "${IIB_PYTHON}" -B "${PROJECT_SOURCE_DIR}/scripts/helpers/cpp_api_test.py")
   set(pages "${PROJECT_SOURCE_DIR}/tools/pages")
   add_test(NAME pages COMMAND "${IIB_PYTHON}" -B "${pages}/pages.py" --check)  # writing them anew changes nothing
   add_test(NAME pages-test COMMAND "${IIB_PYTHON}" -B "${pages}/test/test_pages.py")

@@ -28,12 +28,13 @@ from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.refinement import PropagatedMatches, RefinedMatches, propagateMatches, refineMatches
 from opencv_iib.rotation import estimateRotation, matchRotated
+from opencv_iib.views import ViewMatcher, ViewMatches, matchViews
 
 __all__ = ['Alignment', 'AlignmentModel', 'Border', 'Channel', 'DMatch', 'Features', 'FoundPose', 'HessianDetector',
            'HierarchicalMatcher', 'IIB', 'IIBDescriptorExtractor', 'ImageAligner', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches',
            'Mode', 'NoAlignment', 'NoPose', 'NormalizedDetector', 'OPENCV_VERSION', 'Orientation', 'Preset', 'PropagatedMatches',
-           'RefinedMatches', 'alignImages', 'array_to_keypoints', 'detect_and_describe', 'error', 'estimateRotation',
-           'findRelativePose', 'getNumThreads', 'keypoints_to_array', 'logFalseAlarms', 'match', 'matchRotated',
+           'RefinedMatches', 'ViewMatcher', 'ViewMatches', 'alignImages', 'array_to_keypoints', 'detect_and_describe', 'error', 'estimateRotation',
+           'findRelativePose', 'getNumThreads', 'keypoints_to_array', 'logFalseAlarms', 'match', 'matchRotated', 'matchViews',
            'propagateMatches', 'refineMatches', 'setNumThreads']
 
 __version__: str = _core.VERSION

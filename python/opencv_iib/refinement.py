@@ -34,7 +34,7 @@ def refineMatches(image1: ArrayLike, keypoints1: Keypoints, image2: ArrayLike, k
     :raises opencv_iib.error: for a match without a keypoint, and for images and keypoints that cannot be described.
     :raises TypeError: for matches that are neither.
     """
-    return RefinedMatches(*_rows(*_core.refineMatches(
+    return RefinedMatches(*float_rows(*_core.refineMatches(
         as_image(image1), as_rows(keypoints1), as_image(image2), as_rows(keypoints2), as_pairs(matches1to2))))
 
 
@@ -70,13 +70,13 @@ def propagateMatches(image1: Union[ArrayLike, _core.PreparedImage], keypoints1: 
         images = [as_image(image) for image in images]
     found, *rows = _core.propagateMatches(images[0], as_rows(keypoints1), images[1], as_rows(keypoints2), as_pairs(matches1to2))
     if isinstance(matches1to2, np.ndarray) or (len(matches1to2) and not hasattr(matches1to2[0], 'queryIdx')):
-        return PropagatedMatches(found.reshape(-1, 4)[:, :2], *_rows(*rows))
+        return PropagatedMatches(found.reshape(-1, 4)[:, :2], *float_rows(*rows))
     make, distance = match_type(), float(np.finfo(np.float32).max)
     added = [make(query, train, image, distance) for query, train, image in found[len(matches1to2):, :3].tolist()]
-    return PropagatedMatches((*matches1to2, *added), *_rows(*rows))
+    return PropagatedMatches((*matches1to2, *added), *float_rows(*rows))
 
 
-def _rows(points1: NDArray[Any], points2: NDArray[Any], covariances: NDArray[Any],
+def float_rows(points1: NDArray[Any], points2: NDArray[Any], covariances: NDArray[Any],
           similarities: NDArray[Any]) -> tuple[NDArray[Any], ...]:
     """Without matches they have no columns and no type."""
     return tuple(rows.astype(np.float32, copy=False).reshape(shape)

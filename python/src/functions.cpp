@@ -78,6 +78,19 @@ auto align(const Aligner& aligner, const cv::Mat& image, const cv::Mat& mask)
             std::string(reason));
 }
 
+typedef Held<cv::iib::ViewMatcher> ViewMatcher;
+
+// Whether the matches are significant, why not, the view, and rows of the matches.
+auto matchViews(const ViewMatcher& matcher, const cv::Mat& image, const cv::Mat& mask)
+{
+    cv::Mat points1, points2, covariances, similarities, view;
+    cv::String reason;
+    const bool found =
+            matcher->match(image, points1, points2, covariances, similarities, view, mask, &reason);
+    return std::make_tuple(
+            found, std::string(reason), onlyIf(found, view), points1, points2, covariances, similarities);
+}
+
 }  // namespace
 
 void bindFunctions(nb::module_& m)
@@ -108,6 +121,14 @@ void bindFunctions(nb::module_& m)
                     },
                     WithoutGil())
             .def("align", &align, WithoutGil());
+    nb::class_<ViewMatcher>(m, "ViewMatcher")  // which holds a view of the image
+            .def_static(
+                    "create",
+                    [](const cv::Mat& image, int maxFeatures, double maxTilt, const cv::Mat& mask) {
+                        return ViewMatcher{cv::iib::ViewMatcher::create(image, maxFeatures, maxTilt, mask)};
+                    },
+                    WithoutGil())
+            .def("match", &matchViews, WithoutGil());
 }
 
 }  // namespace iib_python

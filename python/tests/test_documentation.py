@@ -10,7 +10,7 @@ import numpy as np
 
 from support import REPOSITORY, InFolder, cv2, texture
 
-PAGES = [REPOSITORY / 'README.md', *sorted(set((REPOSITORY / 'doc').glob('*.md')) - {REPOSITORY / 'doc/api_python.md'}), *sorted(REPOSITORY.glob('modules/*/*.md')),
+PAGES = [REPOSITORY / 'README.md', *sorted((REPOSITORY / 'doc').glob('*.md')), *sorted(REPOSITORY.glob('modules/*/*.md')),
          *sorted(REPOSITORY.glob('modules/*/tutorials/*.markdown'))]
 # In place of OpenCV 5's networks, whose files are not here: classes with the names and arguments of 5.0.0, as far as the guide uses them,
 # so that it can use no others.

@@ -14,8 +14,6 @@ import unittest
 
 import opencv_iib
 
-from support import REPOSITORY
-
 CLASSES = ('IIBDescriptorExtractor', 'HierarchicalMatcher', 'HessianDetector', 'NormalizedDetector', 'MappedIndex')
 
 
@@ -30,11 +28,6 @@ class Names(unittest.TestCase):
                     self.assertEqual([str(int(here))], rest)
                 else:
                     self.assertLessEqual(set(rest), set(inspect.signature(here).parameters))
-
-    @unittest.skipUnless((REPOSITORY / 'doc/api_python.md').exists() and (REPOSITORY / 'scripts').exists(), 'only these tests are here')
-    def test_the_list_of_public_names(self):
-        done = subprocess.run([sys.executable, '-B', str(REPOSITORY / 'scripts/helpers/python_names.py'), '--check'], capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_constants(self):
         iib = opencv_iib.IIB

@@ -12,6 +12,8 @@ import sys
 # What a folder below src may include, besides precomp.hpp; the rest of the module includes what it likes.
 ALLOWED = {'': {''}, 'common': {'common'}, 'rotation': {'rotation', 'common'}}
 ALLOWED['pose'] = {'pose', 'common'}  # of iib_geometry
+ALLOWED['views'] = {'views', *ALLOWED['pose']}
+ALLOWED['alignment'] = {'alignment', *ALLOWED['views']}
 ALLOWED['map'] = {'map', *ALLOWED['pose']}
 ALLOWED['locate'] = {'locate', *ALLOWED['map']}
 for wing in ('descriptor', 'matcher', 'detector', 'normalization', 'refinement'):

@@ -7,6 +7,7 @@
 #include "opencv2/iib/localization.hpp"
 #include "opencv2/iib/relative_pose.hpp"
 #include "opencv2/iib/verdict.hpp"
+#include "opencv2/iib/views.hpp"
 
 /** @defgroup iib_geometry Poses from matches of the illumination-insensitive binary descriptor */
 

@@ -7,7 +7,7 @@
 
 #include "../precomp.hpp"
 #include "five_points.hpp"
-#include "points.hpp"
+#include "../common/points.hpp"
 
 namespace cv::iib {
 namespace {

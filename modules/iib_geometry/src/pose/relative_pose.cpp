@@ -2,7 +2,7 @@
 #include "opencv2/iib/relative_pose.hpp"
 
 #include "epipolar_problem.hpp"
-#include "points.hpp"
+#include "../common/points.hpp"
 #include "uncertainty.hpp"
 #include "verdict.hpp"
 

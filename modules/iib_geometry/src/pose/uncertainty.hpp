@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "points.hpp"
+#include "../common/points.hpp"
 #include "robust_fit.hpp"
 
 namespace cv::iib {

@@ -8,7 +8,7 @@
 
 #include "../precomp.hpp"
 #include "opencv2/iib/verdict.hpp"
-#include "points.hpp"
+#include "../common/points.hpp"
 
 namespace cv::iib {
 namespace {

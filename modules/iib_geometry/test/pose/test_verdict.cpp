@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "pose/points.hpp"
+#include "common/points.hpp"
 #include "pose/verdict.hpp"
 #include "two_cameras.hpp"
 

@@ -2,11 +2,13 @@
 #include "opencv2/iib/alignment.hpp"
 
 #include "parallax.hpp"
-#include "planar_problem.hpp"
-#include "points.hpp"
+#include "../pose/planar_problem.hpp"
+#include "../common/points.hpp"
 #include "spread.hpp"
-#include "uncertainty.hpp"
-#include "verdict.hpp"
+#include "../pose/uncertainty.hpp"
+#include "../pose/verdict.hpp"
+#include "../common/points.hpp"
+#include "../views/view_search.hpp"
 #include "working_pair.hpp"
 
 namespace cv::iib {
@@ -25,18 +27,15 @@ const double LEAST_GAIN = 4.5, LEAST_GAIN_OF_MATCH = .25;
 const double MOST_PARALLAX = .25;  // of the places that agree may move as if the camera had moved
 const double LEAST_PARALLAX = 6;   // working pixels: shadows of another light move by less
 const int WORKING_SIZE = 1024;     // as HessianDetector has it
+const int FEATURES = 2000;         // of a view
+const int MOST_IMPROVED = 3;       // times
+const double MOST_TILT = 4;        // that models with a shear are searched for
 const double ANY = 1e3;            // deviation of a number of a transform
 
 const double LEAST_REFINED = .5;  // of the matches that agree at the working size
 /* Of a match's deviation: what light and lens shift in all matches alike, as far as pairs under other lamps and exposures show it
 (doc/uncertainty.md). */
 const double COMMON = .4;
-
-struct Attempt
-{
-    int workingSize;  //!< pixels of the longer side
-    bool rotated;
-};
 
 const char* const MODELS[] = {"TRANSLATION", "SIMILARITY", "AFFINE", "HOMOGRAPHY"};
 const char* const NAMES[] = {"a translation", "a similarity", "an affine transform", "a homography"};
@@ -62,24 +61,26 @@ struct Aligned
     int count() const { return countOf(agree); }
 };
 
-bool isCertain(const Aligned& aligned, const Verdict& verdict)
+//! @param tried number of views in which the images were matched.
+bool isCertain(const Aligned& aligned, const Verdict& verdict, int tried)
 {
     std::vector<double> limits;
     for (double limit : {.5, 1., 2., 4.})
         limits.push_back(limit * aligned.limit);
     return verdict.logFalseAlarms(aligned.fit.squared,
                    errorsOfWrongMatches(aligned.problem, aligned.fit.model), Verdict::FROM_POINT,
-                   aligned.problem.sampleSize(), limits) < Verdict::CERTAIN;
+                   aligned.problem.sampleSize(), limits) +
+                   std::log10((double)tried) <
+           Verdict::CERTAIN;
 }
 
 /** Standard deviations of the places of the image's corners, 4 x 1, CV_64F, working pixels.
 @param beside what parts of the images differ by from the transform. */
-Mat deviationsOf(const Aligned& aligned, const AlignedPoints& points, const Size& size, double beside)
+Mat deviationsOf(const Aligned& aligned, const AlignedPoints& points, const std::vector<Point2d>& corners,
+        double beside)
 {
     const Square<PlanarProblem::Step> covariance =
             covarianceOf(aligned.problem, aligned.fit, partsOf(points.reference), ANY);
-    const double right = size.width - 1, bottom = size.height - 1;
-    const Point2d corners[] = {{0, 0}, {right, 0}, {right, bottom}, {0, bottom}};
     Mat deviations(4, 1, CV_64F);
     for (int k = 0; k < 4; k++)
         deviations.at<double>(k) =
@@ -88,19 +89,13 @@ Mat deviationsOf(const Aligned& aligned, const AlignedPoints& points, const Size
     return deviations;
 }
 
-std::vector<Attempt> attemptsFor(const Size& first, const Size& second, int model)
+//! Pixels of the longer side at which upright images are matched, one after the other.
+std::vector<int> workingSizes(const Size& first, const Size& second)
 {
-    std::vector<Attempt> attempts;
-    const bool isLarge =
-            std::max({first.width, first.height, second.width, second.height}) > WORKING_SIZE / 2;
-    for (bool rotated : {false, true})
-        if (!rotated || model != ALIGN_TRANSLATION)
-        {
-            attempts.push_back({WORKING_SIZE, rotated});
-            if (isLarge)  // blurred images, as of a focus stack, are sharper at half the size
-                attempts.push_back({WORKING_SIZE / 2, rotated});
-        }
-    return attempts;
+    if (std::max({first.width, first.height, second.width, second.height}) <= WORKING_SIZE / 2)
+        return {WORKING_SIZE};
+    return {WORKING_SIZE,
+            WORKING_SIZE / 2};  // blurred images, as of a focus stack, are sharper at half the size
 }
 
 //! The matches beside a transform by so much, working pixels, or more, that the camera's motion explains.
@@ -148,10 +143,10 @@ struct Judgement
 /** Why another model is that of the images; empty if this one is, or if the answer is doubtful.
 @param richer the transforms of more freedom, the one of most freedom last. */
 std::string reasonAgainstModel(
-        const Aligned& aligned, const std::vector<Aligned>& richer, const Verdict& verdict)
+        const Aligned& aligned, const std::vector<Aligned>& richer, const Verdict& verdict, int tried)
 {
     const size_t model = ALIGN_HOMOGRAPHY - richer.size();
-    if (richer.empty() || !isBetter(richer.back(), aligned) || !isCertain(richer.back(), verdict))
+    if (richer.empty() || !isBetter(richer.back(), aligned) || !isCertain(richer.back(), verdict, tried))
         return "";
     size_t k = 0;
     while (isBetter(richer.back(), richer[k]))
@@ -162,7 +157,8 @@ std::string reasonAgainstModel(
             NAMES[model], MODELS[model + 1 + k], near(richer[k]), near(aligned));
 }
 
-Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, const WorkingPair& pair)
+Judgement judge(
+        const Aligned& aligned, const AlignedPoints& points, int model, const WorkingPair& pair, int tried)
 {
     if (aligned.fit.squared.empty())
         return {"the images have too few matches", false};
@@ -170,10 +166,10 @@ Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, 
     std::vector<Aligned> richer;
     for (int other = model + 1; other <= ALIGN_HOMOGRAPHY; other++)
         richer.emplace_back(points, other);
-    const std::string wrongModel = reasonAgainstModel(aligned, richer, verdict);
+    const std::string wrongModel = reasonAgainstModel(aligned, richer, verdict, tried);
     if (!wrongModel.empty())
         return {wrongModel, true};
-    if (!isCertain(aligned, verdict))
+    if (!isCertain(aligned, verdict, tried))
         return {format("the transform that agrees best has %d of %d matches, no more than chance may give: "
                        "the images may not show the same",
                         aligned.count(), aligned.problem.size()),
@@ -202,75 +198,139 @@ Judgement judge(const Aligned& aligned, const AlignedPoints& points, int model, 
     return {"", true};
 }
 
+//! What images matched in one pair of views tell, in the images' own pixels.
+struct Answer
+{
+    Judgement judgement;
+    Mat agreeing;       //!< as alignImages returns matches
+    Matx33d transform;  //!< that most of them agree with, also where it is refused
+    Mat error;
+
+    bool found() const { return judgement.against.empty(); }
+};
+
+Answer answerOf(const WorkingPair& pair, int model, int tried)
+{
+    AlignedPoints points = pair.match();
+    Aligned aligned(points, model);
+    Answer answer;
+    answer.judgement = judge(aligned, points, model, pair, tried);
+    const double beside =
+            answer.found() ? deviationBeside(aligned, points) : 0;  // only those that agree are refined
+    if (answer.found() && pair.isReduced())
+    {
+        const AlignedPoints fine =
+                pair.refined(points, aligned.agree, aligned.problem.inPixels(aligned.fit.model));
+        const Aligned again(fine, model);
+        // Else they are too blurred, or sharp in a part alone.
+        if (again.count() > LEAST_REFINED * aligned.count())
+        {
+            const Judgement finer = judge(again, fine, model, pair, tried);
+            if (finer.isLast)
+            {
+                answer.judgement = finer;
+                aligned = again;
+                points = fine;
+            }
+        }
+    }
+    answer.agreeing = pair.inPixels(points, aligned.agree);
+    if (aligned.fit.squared.empty())
+        return answer;
+    answer.transform = pair.inPixels(aligned.problem.inPixels(aligned.fit.model));
+    if (answer.found())
+        answer.error = Mat(deviationsOf(aligned, points, pair.imageCorners(), beside) * pair.inPixels(1));
+    return answer;
+}
+
 class ImageAlignerImpl : public ImageAligner
 {
 public:
     ImageAlignerImpl(const Mat& reference, int model, const Mat& mask)
-        : model_(model), reference_(reference, mask)
+        : model_(model), reference_(reference, mask, FEATURES)
     {
     }
 
     bool align(InputArray image, OutputArray transform, OutputArray error, OutputArray matches,
             String* reason, InputArray mask) const override
     {
-        const WorkingImage second(image.getMat(), mask.getMat());
-        Mat agreeing;
-        std::string against;
-        for (const Attempt& attempt : attemptsFor(reference_.size(), second.size(), model_))
-        {
-            const WorkingPair pair(reference_, second, attempt.workingSize, model_ == ALIGN_TRANSLATION);
-            AlignedPoints points = pair.match(attempt.rotated);
-            Aligned aligned(points, model_);
-            Judgement now = judge(aligned, points, model_, pair);
-            const double beside =  // of all matches: only those that agree are refined
-                    error.needed() && now.against.empty() ? deviationBeside(aligned, points) : 0;
-            if (now.against.empty() && pair.isReduced())
-            {
-                const AlignedPoints fine =
-                        pair.refined(points, aligned.agree, aligned.problem.inPixels(aligned.fit.model));
-                const Aligned again(fine, model_);
-                // Else they are too blurred, or sharp in a part alone.
-                if (again.count() > LEAST_REFINED * aligned.count())
-                {
-                    const Judgement finer = judge(again, fine, model_, pair);
-                    if (finer.isLast)
-                    {
-                        now = finer;
-                        aligned = again;
-                        points = fine;
-                    }
-                }
-            }
-            const Mat agree = pair.inPixels(points, aligned.agree);
-            if (now.isLast || agreeing.empty() || agree.rows > agreeing.rows)
-            {
-                agreeing = agree;
-                against = now.against;
-            }
-            if (!now.isLast)
-                continue;
-            if (!against.empty())
-                break;
-            Mat(pair.inPixels(aligned.problem.inPixels(aligned.fit.model))).copyTo(transform);
-            if (error.needed())
-                Mat(deviationsOf(aligned, points, pair.size(1), beside) * pair.inPixels(1)).copyTo(error);
-            break;
-        }
-        if (matches.needed())
-            (CV_MAT_CN(matches.fixedType() ? matches.type() : CV_32F) == 4 ? agreeing.reshape(4) : agreeing)
-                    .copyTo(matches);  // a matrix, or std::vector<Vec4f>
+        const ImageViews second(image.getMat(), mask.getMat(), FEATURES);
+        Answer best;
+        attempt([&](int size) { return WorkingPair(reference_, second, size, model_ == ALIGN_TRANSLATION); },
+                second, 1, best);
+        if (model_ != ALIGN_TRANSLATION)
+            search(second, best);
+        writeRows(best.agreeing, matches);
         if (reason)
-            *reason = against;
-        if (against.empty())
+            *reason = best.judgement.against;
+        if (best.found())
+        {
+            Mat(best.transform).copyTo(transform);
+            if (error.needed())
+                best.error.copyTo(error);
             return true;
+        }
         clear(transform);
         clear(error);
         return false;
     }
 
 private:
+    /** Keeps the best answer at all working sizes, up to the last one that is needed. What fewer matches agree with than with one that
+    was refused, such as that of a logo, is none. */
+    template <typename PairOf>
+    void attempt(PairOf pairOf, const ImageViews& second, int tried, Answer& best) const
+    {
+        for (int size : workingSizes(reference_.size(), second.size()))
+        {
+            const Answer answer = answerOf(pairOf(size), model_, tried);
+            if ((answer.judgement.isLast && !answer.found()) || best.agreeing.empty() ||
+                    answer.agreeing.rows > best.agreeing.rows)
+                best = answer;
+            if (best.judgement.isLast)
+                return;
+        }
+    }
+
+    //! In views that images rotated, zoomed or tilted against each other are alike in, if they are.
+    void search(const ImageViews& second, Answer& best) const
+    {
+        if (best.judgement.isLast)
+            return improve(second, Matx33d::eye(), 1, best);
+        const bool onlySimilar = model_ == ALIGN_SIMILARITY;
+        searchViews(reference_, second, onlySimilar ? 1 : MOST_TILT,
+                [&](const ViewCandidate& candidate, int tried) {
+                    const Matx33d map = onlySimilar ? similarityOf(candidate.map) : candidate.map;
+                    if (areAlike(map, Matx33d::eye()))
+                        return false;  // it was tried
+                    attempt([&](int size) { return WorkingPair(reference_, second, size, map); }, second,
+                            tried, best);
+                    if (best.judgement.isLast)
+                        improve(second, map, tried, best);
+                    return best.judgement.isLast;
+                });
+    }
+
+    /** Again in the views of the transform that was found, as long as these are others. Where the answer was a refusal, too: matches in views that
+    fit badly may lie as if the camera had moved. */
+    void improve(const ImageViews& second, Matx33d map, int tried, Answer& best) const
+    {
+        for (int round = 0; round < MOST_IMPROVED; round++)
+        {
+            const Matx33d next = affineAt(best.transform.inv(), Point2d(reference_.size()) / 2);
+            if (areAlike(next, map))
+                return;
+            map = next;
+            const Answer answer =
+                    answerOf(WorkingPair(reference_, second, WORKING_SIZE, map), model_, tried + 1);
+            if (answer.agreeing.rows <= best.agreeing.rows || (best.found() && !answer.found()))
+                return;
+            best = answer;
+        }
+    }
+
     int model_;
-    WorkingImage reference_;
+    ImageViews reference_;
 };
 
 }  // namespace

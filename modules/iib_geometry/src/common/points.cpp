@@ -33,6 +33,12 @@ void checkMatched(const Mat& points1, const Mat& points2, const char* function)
                         points1.rows, points2.rows));
 }
 
+Point2d moved(const Matx33d& by, const Point2d& point)
+{
+    const Vec3d q = by * Vec3d(point.x, point.y, 1);
+    return {q[0] / q[2], q[1] / q[2]};
+}
+
 Rect2d spanOf(const Mat& points)
 {
     if (points.empty())
@@ -47,6 +53,14 @@ Rect2d spanOf(const Mat& points)
         most[c] = std::max(sorted.at<double>(count - 1 - outermost), least[c] + 1);
     }
     return Rect2d(least[0], least[1], most[0] - least[0], most[1] - least[1]);
+}
+
+void writeRows(const Mat& rows, OutputArray output)
+{
+    if (!output.needed())
+        return;
+    const int type = output.fixedType() ? output.type() : rows.type(), channels = CV_MAT_CN(type);
+    (channels == rows.cols ? rows.reshape(channels) : rows).convertTo(output, type);
 }
 
 void clear(OutputArray output)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "verdict.hpp"
+#include "../pose/verdict.hpp"
 
 namespace cv::iib {
 

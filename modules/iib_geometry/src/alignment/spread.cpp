@@ -106,7 +106,7 @@ Spread::Spread(const AlignedPoints& points, const Verdict::Marks& agree, const M
     }
     area = least > 0 ? areaOf(agreeing) / least : 0;
 
-    const Size size = pair.size(0);
+    const Size size = pair.referenceSize();
     int both = 0;
     for (int row = 0; row < SAMPLES_ACROSS; row++)
         for (int column = 0; column < SAMPLES_ACROSS; column++)

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "working_pair.hpp"
+
+namespace cv::iib {
+namespace {
+
+const int LEAST_SIDE = 64;  // pixels that are left of a reduced image
+const int SMALL = 480;      // pixels of the longest side: views of a search below it are enlarged
+
+int largestFactor(const Size& size) { return std::max(std::min(size.width, size.height) / LEAST_SIDE, 1); }
+
+int factorFor(const Size& size, int workingSize)
+{
+    return std::clamp(
+            (std::max(size.width, size.height) + workingSize - 1) / workingSize, 1, largestFactor(size));
+}
+
+Point2d rowOf(const Mat& points, int i) { return points.at<Vec2d>(i); }
+
+//! Moves points, N x 2, CV_64F.
+Mat allMoved(const Matx33d& by, const Mat& points)
+{
+    Mat result = points.clone();
+    for (int i = 0; i < points.rows; i++)
+        result.at<Point2d>(i) = moved(by, rowOf(points, i));
+    return result;
+}
+
+}  // namespace
+
+WorkingPair::WorkingPair(
+        const ImageViews& reference, const ImageViews& image, int workingSize, bool sameScale)
+    : images_{&reference, &image}
+{
+    int factors[2];
+    for (int i = 0; i < 2; i++)
+        factors[i] = factorFor(images_[i]->size(), workingSize);
+    // Images of about one size keep their scales to each other, and a translation stays one.
+    const int larger = std::max(factors[0], factors[1]), smaller = std::min(factors[0], factors[1]);
+    if (sameScale || larger <= 2 * smaller)
+        factors[0] = factors[1] =
+                std::min({larger, largestFactor(reference.size()), largestFactor(image.size())});
+    for (int i = 0; i < 2; i++)
+    {
+        views_.views[i] = View::reduced(1. / factors[i]);
+        seen_[i] = images_[i]->seen(views_.views[i]);
+    }
+}
+
+WorkingPair::WorkingPair(
+        const ImageViews& reference, const ImageViews& image, int workingSize, const Matx33d& map)
+    : images_{&reference, &image}, views_(ViewPair::of(map).within(std::min(SMALL, workingSize), workingSize,
+                                           reference.size(), image.size()))
+{
+    seen_[0] = reference.seen(views_.views[0], -1, cornersAround(image.size(), map.inv()));
+    seen_[1] = image.seen(views_.views[1], (float)views_.angle, cornersAround(reference.size(), map));
+}
+
+AlignedPoints WorkingPair::match() const
+{
+    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {seen_[0]->keypoints, seen_[1]->keypoints}};
+    const std::vector<DMatch> matches = matchesOf(*seen_[0], *seen_[1]);
+    if (matches.empty())
+        return result;
+    Mat points1, points2;
+    refineMatches(seen_[0]->prepared, result.keypoints[0], seen_[1]->prepared, result.keypoints[1], matches,
+            points1, points2);
+    points1.convertTo(result.reference, CV_64F);
+    points2.convertTo(result.image, CV_64F);
+    return result;
+}
+
+bool WorkingPair::isReduced() const
+{
+    const double largest = .9;  // of scales by which nothing is lost
+    const auto isSmall = [&](int i) {
+        return std::max(views_.views[i].scales[0], views_.views[i].scales[1]) < largest;
+    };
+    return isSmall(0) && isSmall(1);
+}
+
+AlignedPoints WorkingPair::refined(
+        const AlignedPoints& points, const std::vector<bool>& agree, const Matx33d& transform) const
+{
+    const double size = 10;  // pixels: the ratio of a match's sizes counts alone
+    const Matx33d toImage = inPixels(transform).inv();
+    const ViewPair full = ViewPair::of(affineAt(toImage, Point2d(images_[0]->size()) / 2));
+    Matx33d fromImage[2], toWorking[2];
+    std::shared_ptr<const PreparedImage> prepared[2];
+    for (int i = 0; i < 2; i++)
+    {
+        fromImage[i] = full.views[i].fromImage(images_[i]->size());
+        toWorking[i] = seen_[i]->fromImage * fromImage[i].inv();
+        prepared[i] = images_[i]->prepared(full.views[i]);
+    }
+    const Matx33d between = fromImage[1] * toImage * fromImage[0].inv();
+    std::vector<KeyPoint> first, second;
+    std::vector<DMatch> matches;
+    for (size_t i = 0; i < agree.size(); i++)
+    {
+        if (!agree[i])
+            continue;
+        const Point2d from = moved(toWorking[0].inv(), rowOf(points.reference, (int)i)),
+                      to = moved(between, from), beside = moved(between, from + Point2d(1, 0)) - to;
+        const double angle = fastAtan2((float)beside.y, (float)beside.x);
+        first.emplace_back(Point2f(from), (float)size, 0.f);
+        second.emplace_back(Point2f(to), (float)(size * norm(beside)), (float)angle);
+        matches.emplace_back((int)matches.size(), (int)matches.size(), 0.f);
+    }
+    Mat points1, points2, similarities;
+    refineMatches(
+            *prepared[0], first, *prepared[1], second, matches, points1, points2, noArray(), similarities);
+    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {points.keypoints[0], points.keypoints[1]}};
+    for (size_t i = 0; i < matches.size(); i++)
+        if (similarities.at<float>((int)i) >= 0)
+        {
+            const Point2d from = points1.at<Point2f>((int)i), to = points2.at<Point2f>((int)i);
+            result.reference.push_back(Mat(Vec2d(moved(toWorking[0], from))).t());
+            result.image.push_back(Mat(Vec2d(moved(toWorking[1], to))).t());
+        }
+    return result;
+}
+
+std::vector<Point2d> WorkingPair::imageCorners() const
+{
+    const Size size = images_[1]->size();
+    const double right = size.width - 1, bottom = size.height - 1;
+    std::vector<Point2d> corners;
+    for (const Point2d& corner : {Point2d(), Point2d(right, 0), Point2d(right, bottom), Point2d(0, bottom)})
+        corners.push_back(moved(seen_[1]->fromImage, corner));
+    return corners;
+}
+
+Matx33d WorkingPair::inPixels(const Matx33d& transform) const
+{
+    const Matx33d pixels = seen_[0]->fromImage.inv() * transform * seen_[1]->fromImage;
+    return pixels * (1 / pixels(2, 2));
+}
+
+double WorkingPair::inPixels(double distance) const
+{
+    const Vec2d scales = views_.views[0].scales;
+    return distance / std::min(scales[0], scales[1]);
+}
+
+Mat WorkingPair::inPixels(const AlignedPoints& points, const std::vector<bool>& agree) const
+{
+    Mat both, result(0, 4, CV_32F);
+    if (points.reference.empty())
+        return result;
+    hconcat(allMoved(seen_[0]->fromImage.inv(), points.reference),
+            allMoved(seen_[1]->fromImage.inv(), points.image), both);
+    both.convertTo(both, CV_32F);
+    for (int i = 0; i < both.rows; i++)
+        if (agree[i])
+            result.push_back(both.row(i));
+    return result;
+}
+
+}  // namespace cv::iib

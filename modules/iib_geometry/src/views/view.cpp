@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view.hpp"
+
+#include "../common/points.hpp"
+
+#include <tuple>
+
+#include "opencv2/imgproc.hpp"
+
+namespace cv::iib {
+namespace {
+
+const int LEAST_SIDE = 16;           // pixels of a view
+const double LEAST_TILT = 1.25;      // below it a view is reduced by one scale
+const double LEAST_SHORTENED = .95;  // a scale above it is 1
+
+const double MOST_ENLARGED = 2;  // factor: what is enlarged more has no points of its own
+const double MOST_TURN = 8 * CV_PI / 180, MOST_SCALE = 1.2;  // between views that match as well as others
+
+Mat affine(const Matx33d& map) { return Mat(map.get_minor<2, 3>(0, 0)); }
+
+//! One scale for both axes where they differ little.
+View viewOf(double longitude, Vec2d scales)
+{
+    for (int axis = 0; axis < 2; axis++)
+        if (scales[axis] > LEAST_SHORTENED)
+            scales[axis] = 1;
+    const double tilt = std::max(scales[0], scales[1]) / std::min(scales[0], scales[1]);
+    return tilt < LEAST_TILT ? View::reduced(std::sqrt(scales[0] * scales[1])) : View{longitude, scales};
+}
+
+}  // namespace
+
+bool View::operator<(const View& other) const
+{
+    return std::tie(longitude, scales[0], scales[1]) <
+           std::tie(other.longitude, other.scales[0], other.scales[1]);
+}
+
+Size View::turnedSize(const Size& image) const
+{
+    if (longitude == 0)
+        return image;
+    const double c = std::abs(std::cos(longitude)), s = std::abs(std::sin(longitude));
+    return Size(cvCeil(image.width * c + image.height * s), cvCeil(image.width * s + image.height * c));
+}
+
+//! About the centres of both.
+Matx33d View::turn(const Size& image) const
+{
+    const double c = std::cos(longitude), s = std::sin(longitude);
+    const Size turned = turnedSize(image);
+    const double x = (image.width - 1) / 2., y = (image.height - 1) / 2.;
+    return Matx33d(c, s, (turned.width - 1) / 2. - c * x - s * y, -s, c,
+            (turned.height - 1) / 2. + s * x - c * y, 0, 0, 1);
+}
+
+//! What is left at the right and below a multiple of a whole factor is left out.
+Size View::shownSize(const Size& image) const
+{
+    const int factor = cvRound(1 / scales[0]);
+    if (longitude != 0 || scales != Vec2d::all(1. / factor) ||
+            factor * LEAST_SIDE > std::min(image.width, image.height))
+        return turnedSize(image);
+    return Size(image.width / factor, image.height / factor) * factor;
+}
+
+Size View::sizeOf(const Size& image) const
+{
+    const Size shown = shownSize(image);
+    return Size(std::max(cvRound(shown.width * scales[0]), LEAST_SIDE),
+            std::max(cvRound(shown.height * scales[1]), LEAST_SIDE));
+}
+
+Matx33d View::fromImage(const Size& image) const
+{
+    if (isImage())
+        return Matx33d::eye();
+    const Size shown = shownSize(image), size = sizeOf(image);
+    const double x = (double)size.width / shown.width, y = (double)size.height / shown.height;
+    return Matx33d(x, 0, .5 * x - .5, 0, y, .5 * y - .5, 0, 0, 1) * turn(image);
+}
+
+Mat View::pixels(const Mat& image) const
+{
+    if (isImage() || image.empty() ||
+            (image.depth() != CV_8U && image.depth() != CV_16U && image.depth() != CV_32F))
+        return image;  // the extractor says what is wrong
+    Mat turned = image, view;
+    if (longitude == 0)
+        turned = image(Rect(Point(), shownSize(image.size())));
+    else
+        warpAffine(image, turned, affine(turn(image.size())), turnedSize(image.size()), INTER_LINEAR,
+                BORDER_REFLECT_101);
+    resize(turned, view, sizeOf(image.size()), 0, 0, scales[1] > 1 ? INTER_CUBIC : INTER_AREA);
+    return view;
+}
+
+Mat View::mask(const Size& image, const Mat& mask) const
+{
+    if (mask.empty() && longitude == 0)
+        return Mat();
+    const Mat all = mask.empty() ? Mat(image, CV_8U, Scalar(255)) : mask;
+    Mat view;
+    warpAffine(all, view, affine(fromImage(image)), sizeOf(image), INTER_NEAREST);
+    return view;
+}
+
+ViewPair ViewPair::of(const Matx33d& affine)
+{
+    const Matx22d map = affine.get_minor<2, 2>(0, 0);
+    Vec2d s;
+    Matx22d U, Vt;
+    SVD::compute(map, s, U, Vt);
+    ViewPair pair;
+    const Matx22d V = Vt.t();
+    pair.views[0] = viewOf(std::atan2(V(1, 0), V(0, 0)), {std::min(s[0], 1.), std::min(s[1], 1.)});
+    pair.views[1] = viewOf(std::atan2(U(1, 0), U(0, 0)), {std::min(1 / s[0], 1.), std::min(1 / s[1], 1.)});
+    const auto shape = [](const View& view) {
+        const double c = std::cos(view.longitude), sn = std::sin(view.longitude);
+        return Matx22d::diag(view.scales) * Matx22d(c, sn, -sn, c);
+    };
+    const Matx22d left = shape(pair.views[1]) * map * shape(pair.views[0]).inv();
+    const double angle = std::atan2(left(1, 0) - left(0, 1), left(0, 0) + left(1, 1)) * 180 / CV_PI;
+    pair.angle = angle < 0 ? angle + 360 : angle;
+    return pair;
+}
+
+ViewPair ViewPair::within(int least, int most, const Size& image1, const Size& image2) const
+{
+    const Size size1 = views[0].sizeOf(image1), size2 = views[1].sizeOf(image2);
+    const double longest = std::max({size1.width, size1.height, size2.width, size2.height});
+    ViewPair pair = *this;
+    for (View& view : pair.views)
+        view.scales *= std::min(std::clamp(least / longest, 1., MOST_ENLARGED), most / longest);
+    return pair;
+}
+
+Matx33d affineAt(const Matx33d& transform, const Point2d& point)
+{
+    const double step = .5;  // pixels
+    const Point2d x = moved(transform, point + Point2d(step, 0)) - moved(transform, point - Point2d(step, 0)),
+                  y = moved(transform, point + Point2d(0, step)) - moved(transform, point - Point2d(0, step)),
+                  there = moved(transform, point);
+    return {x.x, y.x, there.x - x.x * point.x - y.x * point.y, x.y, y.y,
+            there.y - x.y * point.x - y.y * point.y, 0, 0, 1};
+}
+
+Matx33d similarityOf(const Matx33d& map)
+{
+    const double c = (map(0, 0) + map(1, 1)) / 2, s = (map(1, 0) - map(0, 1)) / 2;
+    return {c, -s, map(0, 2), s, c, map(1, 2), 0, 0, 1};
+}
+
+bool areAlike(const Matx33d& map, const Matx33d& other)
+{
+    const Matx33d between = map * other.inv(), turn = similarityOf(between);
+    Vec2d scales;
+    SVD::compute(between.get_minor<2, 2>(0, 0), scales, SVD::NO_UV);
+    return scales[0] < MOST_SCALE && scales[1] > 1 / MOST_SCALE &&
+           std::abs(std::atan2(turn(1, 0), turn(0, 0))) < MOST_TURN;
+}
+
+}  // namespace cv::iib

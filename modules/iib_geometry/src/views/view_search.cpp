@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view_search.hpp"
+
+#include "../common/points.hpp"
+#include "support.hpp"
+
+namespace cv::iib {
+namespace {
+
+// Every multiple of 30 degrees is a second angle less a first one; descriptors still match 15 degrees off.
+const std::vector<float> FIRST_ANGLES{-1, 30, 60}, SECOND_ANGLES{-1, 90, 180, 270};
+const int LEVELS = 5;    // of the scale, each the square root of 2 below the one before
+const double BORNE = 2;  // tilt that the descriptor bears
+const double LONGITUDES =
+        72;                   // degrees, over the tilt: between tilted views (Morel and Yu 2009, section 3.2)
+const double FARTHER = .6;    // scale of the other image, to a tilted view
+const double TOLERANCE = .4;  // of displacements, by how far views are from the true one
+const double EXACT = .25;     // of displacements around the estimated map
+const int MUCH = 30;          // matches: support by which a candidate is tried at once
+const int LEAST = 4;          // matches: support by which a candidate is tried at all
+const int MOST_TRIED = 6;     // of such candidates
+
+std::vector<std::pair<View, View>> scaledViews()
+{
+    std::vector<std::pair<View, View>> views = {{View(), View()}};
+    for (int level = 1; level < LEVELS; level++)
+    {
+        const View reduced = View::reduced(std::pow(.5, .5 * level));
+        views.push_back({reduced, View()});
+        views.push_back({View(), reduced});
+    }
+    return views;
+}
+
+std::vector<std::pair<View, View>> tiltedViews(double tilt)
+{
+    std::vector<std::pair<View, View>> views;
+    for (double other : {1., FARTHER})
+        for (double degrees = 0; degrees < 180; degrees += LONGITUDES / tilt)
+        {
+            const View tilted = View::tilted(tilt, degrees * CV_PI / 180), reduced = View::reduced(other);
+            views.push_back({tilted, reduced});
+            views.push_back({reduced, tilted});
+        }
+    return views;
+}
+
+Matx33d rotation(double degrees)
+{
+    const double c = std::cos(degrees * CV_PI / 180), s = std::sin(degrees * CV_PI / 180);
+    return {c, -s, 0, s, c, 0, 0, 0, 1};
+}
+
+std::vector<Point2d> placesOf(const std::vector<KeyPoint>& keypoints, const std::vector<DMatch>& matches,
+        int DMatch::*index, const Matx33d& by)
+{
+    std::vector<Point2d> places;
+    for (const DMatch& match : matches)
+        places.push_back(moved(by, keypoints[match.*index].pt));
+    return places;
+}
+
+//! The best map of two views, of those of all rotations.
+ViewCandidate compare(const ImageViews& first, const View& view1, const ImageViews& second, const View& view2,
+        const HierarchicalMatcher& matcher)
+{
+    const std::vector<Described>&features1 = first.few(view1, FIRST_ANGLES),
+          &features2 = second.few(view2, SECOND_ANGLES);
+    const Matx33d to1 = first.toFew(view1).inv(), to2 = second.toFew(view2).inv();
+    ViewCandidate best{Matx33d::eye(), 0};
+    for (size_t i = 0; i < features1.size(); i++)
+        for (size_t j = 0; j < features2.size(); j++)
+        {
+            if (features1[i].codes.empty() || features2[j].codes.empty())
+                continue;
+            const double angle = std::max(SECOND_ANGLES[j], 0.f) - std::max(FIRST_ANGLES[i], 0.f);
+            std::vector<DMatch> matches;
+            matcher.match(features1[i].codes, features2[j].codes, matches);
+            const Matx33d map = to2 * rotation(angle) * to1.inv();
+            const std::vector<Point2d> places1 = placesOf(
+                                               features1[i].keypoints, matches, &DMatch::queryIdx, to1),
+                                       places2 = placesOf(
+                                               features2[j].keypoints, matches, &DMatch::trainIdx, to2);
+            const Support roughly(places1, places2, map, TOLERANCE);
+            if (roughly.count <= best.support)
+                continue;
+            const Support support(places1, places2, roughly.map, EXACT);
+            if (support.count > best.support)
+                best = {support.map, support.count};
+        }
+    return best;
+}
+
+}  // namespace
+
+void searchViews(const ImageViews& first, const ImageViews& second, double maxTilt,
+        const std::function<bool(const ViewCandidate&, int)>& isAnswer)
+{
+    if (first.size().empty() || second.size().empty())
+        return;
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
+    matcher->setCrossCheck(true);
+    std::vector<std::pair<View, View>> views = scaledViews();
+    for (double tilt = BORNE; tilt < maxTilt; tilt *= BORNE)
+        for (const auto& pair : tiltedViews(tilt))
+            views.push_back(pair);
+    std::vector<ViewCandidate> others;
+    int tried = 0;
+    for (const auto& pair : views)
+    {
+        const ViewCandidate candidate = compare(first, pair.first, second, pair.second, *matcher);
+        tried += int(FIRST_ANGLES.size() * SECOND_ANGLES.size());
+        if (candidate.support >= MUCH && isAnswer(candidate, tried))
+            return;
+        if (candidate.support >= LEAST && candidate.support < MUCH)
+            others.push_back(candidate);
+    }
+    std::stable_sort(others.begin(), others.end());
+    for (int k = 0; k < std::min((int)others.size(), MOST_TRIED); k++)
+        if (isAnswer(others[k], tried))
+            break;
+}
+
+}  // namespace cv::iib

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "../alignment/alignment_pictures.hpp"
+#include "opencv2/iib.hpp"
+#include "opencv2/iib_geometry.hpp"
+#include "views/view.hpp"
+
+namespace opencv_test {
+namespace {
+using namespace cv::iib;
+
+Matx33d turned(double degrees)
+{
+    const double c = std::cos(degrees * CV_PI / 180), s = std::sin(degrees * CV_PI / 180);
+    return {c, -s, 0, s, c, 0, 0, 0, 1};
+}
+
+//! Shortened by the tilt along a direction, then reduced and turned, about the middle of a canvas as large as needed.
+struct Change
+{
+    const char* name;
+    double scale, degrees, tilt;
+    int least;  //!< right matches
+
+    Matx33d from(const Size& size, Size& canvas) const
+    {
+        const Matx33d shape =
+                turned(degrees) * turned(-25) * Matx33d::diag({scale / tilt, scale, 1}) * turned(25);
+        std::vector<Point2d> at;
+        perspectiveTransform(std::vector<Point2d>{{0, 0}, {size.width - 1., 0}, {0, size.height - 1.},
+                                     {size.width - 1., size.height - 1.}},
+                at, shape);
+        double low[2] = {at[0].x, at[0].y}, high[2] = {at[0].x, at[0].y};
+        for (const Point2d& p : at)
+        {
+            low[0] = std::min(low[0], p.x);
+            low[1] = std::min(low[1], p.y);
+            high[0] = std::max(high[0], p.x);
+            high[1] = std::max(high[1], p.y);
+        }
+        canvas = Size(cvCeil(high[0] - low[0]) + 1, cvCeil(high[1] - low[1]) + 1);
+        return Matx33d(1, 0, -low[0], 0, 1, -low[1], 0, 0, 1) * shape;
+    }
+
+    Mat of(const Mat& image, Matx33d& truth) const
+    {
+        Size canvas;
+        truth = from(image.size(), canvas);
+        const int finer = 4;  // the mean of so many pixels a side is one, as a sensor has it
+        const double shift = .5 * (finer - 1);
+        Mat fine, result;
+        warpPerspective(image, fine, Matx33d(finer, 0, shift, 0, finer, shift, 0, 0, 1) * truth,
+                canvas * finer, INTER_LINEAR, BORDER_CONSTANT, Scalar(128));
+        resize(fine, result, canvas, 0, 0, INTER_AREA);
+        return inOtherLight(result);
+    }
+};
+
+Mat largePicture(int seed)
+{
+    Mat image = spots(seed, 2500, Size(640, 480));
+    GaussianBlur(image, image, Size(), .8);
+    return image;
+}
+
+int countOfRight(const Mat& points1, const Mat& points2, const Matx33d& truth)
+{
+    int right = 0;
+    for (int i = 0; i < points1.rows; i++)
+    {
+        const Vec3d q = truth * Vec3d(points1.at<float>(i, 0), points1.at<float>(i, 1), 1);
+        right += std::hypot(q[0] / q[2] - points2.at<float>(i, 0), q[1] / q[2] - points2.at<float>(i, 1)) < 3;
+    }
+    return right;
+}
+
+TEST(Views, match_at_any_zoom_rotation_and_tilt)
+{
+    const Mat image = largePicture(1);
+    for (const Change& change : {Change{"reduced", .25, 0, 1, 200}, Change{"enlarged", 2, 0, 1, 300},
+                 Change{"rotated", 1, 45, 1, 500}, Change{"upside down", .5, 200, 1, 400},
+                 Change{"tilted", 1, 0, 3, 250}, Change{"tilted much", 1, 0, 4, 150},
+                 Change{"tilted and rotated", 1, 60, 2, 400}})
+    {
+        Matx33d truth;
+        const Mat other = change.of(image, truth);
+        for (bool swapped : {false, true})
+        {
+            const Mat images[] = {swapped ? other : image, swapped ? image : other};
+            Mat points1, points2, covariances, similarities, view;
+            String reason;
+            ASSERT_TRUE(matchViews(images[0], images[1], points1, points2, covariances, similarities, view,
+                    1000, 4, noArray(), noArray(), &reason))
+                    << change.name << ": " << reason;
+            EXPECT_EQ("", reason);
+            const int right =
+                    swapped ? countOfRight(points2, points1, truth) : countOfRight(points1, points2, truth);
+            EXPECT_GE(right, change.least) << change.name << swapped;
+            EXPECT_GE(right, .9 * points1.rows) << change.name << swapped;
+            EXPECT_EQ(Size(3, points1.rows), covariances.size());
+            EXPECT_EQ(Size(1, points1.rows), similarities.size());
+            const Matx33d there = swapped ? Matx33d(view).inv() : Matx33d(view);
+            EXPECT_LT(cv::norm(there * truth.inv(), Matx33d::eye(), NORM_INF), 5)
+                    << change.name << swapped << view;
+        }
+    }
+}
+
+//! Squared errors over variances are about one along each axis, whatever the view did to the pixels.
+TEST(Views, covariances_are_of_pixels_of_the_image)
+{
+    Matx33d truth;
+    const Mat image = largePicture(2),
+              other = Change{"", 3, 30, 1, 0}.of(image(Rect(200, 150, 220, 170)), truth);
+    Mat points1, points2, covariances;
+    ASSERT_TRUE(matchViews(image(Rect(200, 150, 220, 170)), other, points1, points2, covariances));
+    std::vector<double> errors;
+    for (int i = 0; i < points1.rows; i++)
+    {
+        const Vec3d q = truth * Vec3d(points1.at<float>(i, 0), points1.at<float>(i, 1), 1);
+        errors.push_back(std::pow(q[0] - points2.at<float>(i, 0), 2) / covariances.at<float>(i, 0));
+    }
+    ASSERT_GE(errors.size(), 50u);
+    std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+    EXPECT_GT(errors[errors.size() / 2], .005);
+    EXPECT_LT(errors[errors.size() / 2], 3);
+}
+
+TEST(Views, an_ordinary_pair_has_the_matches_of_the_chain)
+{
+    const Mat image = largePicture(3), other = inOtherLight(image);
+    const Ptr<IIB> iib = IIB::createRecommended(500);
+    std::vector<KeyPoint> keypoints1, keypoints2;
+    Mat codes1, codes2, expected1, expected2, points1, points2, view;
+    iib->detectAndCompute(image, noArray(), keypoints1, codes1);
+    iib->detectAndCompute(other, noArray(), keypoints2, codes2);
+    std::vector<DMatch> matches;
+    HierarchicalMatcher::createRecommended()->match(codes1, codes2, matches);
+    propagateMatches(image, keypoints1, other, keypoints2, matches, expected1, expected2);
+    ASSERT_TRUE(matchViews(image, other, points1, points2, noArray(), noArray(), view, 500));
+    EXPECT_EQ(0, cv::norm(points1, expected1, NORM_INF));
+    EXPECT_EQ(0, cv::norm(points2, expected2, NORM_INF));
+    EXPECT_LT(cv::norm(Matx33d(view), Matx33d::eye(), NORM_INF), .2);
+}
+
+TEST(Views, refuses_images_of_other_scenes)
+{
+    for (int seed = 0; seed < 6; seed++)
+    {
+        Mat points1, points2, view;
+        String reason;
+        EXPECT_FALSE(matchViews(picture(seed), picture(seed + 50), points1, points2, noArray(), noArray(),
+                view, 1000, 4, noArray(), noArray(), &reason))
+                << seed;
+        EXPECT_FALSE(reason.empty());
+        EXPECT_TRUE(view.empty());
+        EXPECT_EQ(points1.size(), points2.size());
+    }
+    Mat points1, points2;
+    EXPECT_FALSE(matchViews(Mat(), picture(1), points1, points2));
+    EXPECT_FALSE(matchViews(picture(1), Mat(300, 400, CV_8U, Scalar(9)), points1, points2));
+    EXPECT_TRUE(points1.empty() && points2.empty());
+}
+
+TEST(Views, one_matcher_serves_many_images_as_each_alone)
+{
+    const Mat image = largePicture(4);
+    const Ptr<ViewMatcher> matcher = ViewMatcher::create(image, 600);
+    const int threads = getNumThreads();
+    for (const Change& change : {Change{"", .35, 30, 1, 0}, Change{"", 1, 0, 3, 0}, Change{"", 1, 90, 1, 0}})
+    {
+        Matx33d truth;
+        const Mat other = change.of(image, truth);
+        std::vector<Point2f> points1, points2;
+        Mat alone1, alone2;
+        ASSERT_TRUE(matcher->match(other, points1, points2));
+        setNumThreads(1);
+        ASSERT_TRUE(matchViews(image, other, alone1, alone2, noArray(), noArray(), noArray(), 600));
+        setNumThreads(threads);
+        EXPECT_EQ(0, cv::norm(Mat(points1).reshape(1), alone1, NORM_INF));
+        EXPECT_EQ(0, cv::norm(Mat(points2).reshape(1), alone2, NORM_INF));
+    }
+}
+
+TEST(Views, masks_hold_in_all_views)
+{
+    const Mat image = largePicture(5);
+    Matx33d truth;
+    const Mat other = Change{"", .5, 45, 1, 0}.of(image, truth);
+    Mat mask(image.size(), CV_8U, Scalar(0)), points1, points2;
+    mask.colRange(0, 320) = 255;
+    ASSERT_TRUE(matchViews(image, other, points1, points2, noArray(), noArray(), noArray(), 1000, 4, mask));
+    for (int i = 0; i < points1.rows; i++)
+        EXPECT_LT(points1.at<float>(i, 0), 323);
+    EXPECT_THROW(matchViews(image, other, points1, points2, noArray(), noArray(), noArray(), 1000, 4,
+                         noArray(), mask),
+            cv::Exception);
+    for (double tilt : {.5, 9., std::numeric_limits<double>::quiet_NaN()})
+        EXPECT_THROW(matchViews(image, other, points1, points2, noArray(), noArray(), noArray(), 1000, tilt),
+                cv::Exception);
+}
+
+TEST(Views, show_two_images_in_one_shape_without_enlarging)
+{
+    RNG random(3);
+    for (int trial = 0; trial < 200; trial++)
+    {
+        const double first = std::exp(random.uniform(-1.5, 1.5)),
+                     second = std::exp(random.uniform(-1.5, 1.5));
+        const Matx33d map = turned(random.uniform(0., 360.)) * Matx33d::diag({first, second, 1}) *
+                            turned(random.uniform(0., 360.));
+        const ViewPair pair = ViewPair::of(map);
+        const Size size(640, 480);
+        const Matx33d left = pair.views[1].fromImage(size) * map * pair.views[0].fromImage(size).inv() *
+                             turned(-pair.angle);
+        Vec2d scales;
+        SVD::compute(left.get_minor<2, 2>(0, 0), scales, SVD::NO_UV);
+        EXPECT_LT(scales[0], 1.3);
+        EXPECT_GT(scales[1], 1 / 1.3);
+        EXPECT_NEAR(left(0, 1), left(1, 0), .3);  // nothing is turned
+        EXPECT_GT(left(0, 0), .7);
+        for (const View& view : pair.views)
+            EXPECT_LE(std::max(view.scales[0], view.scales[1]), 1);
+    }
+}
+
+//! A spot comes to lie where the map has it.
+TEST(Views, pixels_are_where_their_map_has_them)
+{
+    const Point2d spot(201, 77);
+    Mat image(300, 400, CV_32F, Scalar(0));
+    circle(image, Point(spot), 9, Scalar(1), FILLED, LINE_AA);
+    for (const View& view : {View::reduced(.5), View::reduced(1 / 3.), View::reduced(.37),
+                 View::tilted(2, .5), View{1, {.4, .7}}})
+    {
+        Mat seen = view.pixels(image);
+        ASSERT_EQ(view.sizeOf(image.size()), seen.size());
+        const Mat mask = view.mask(image.size(), Mat());
+        if (!mask.empty())
+            seen.setTo(0, mask == 0);
+        const Moments m = moments(seen);
+        const Vec3d there = view.fromImage(image.size()) * Vec3d(spot.x, spot.y, 1);
+        EXPECT_NEAR(there[0], m.m10 / m.m00, .1);
+        EXPECT_NEAR(there[1], m.m01 / m.m00, .1);
+    }
+}
+
+}  // namespace
+}  // namespace opencv_test

@@ -1,0 +1,60 @@
+"""Matches at any zoom, rotation and tilt."""
+from __future__ import annotations
+
+from typing import NamedTuple, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from opencv_iib import _core
+from opencv_iib._arguments import integer, number
+from opencv_iib._arrays import as_image, as_mask
+from opencv_iib.refinement import float_rows
+
+
+class ViewMatches(NamedTuple):
+    """What :func:`matchViews` returns, a row a match; pixels, the centre of the first pixel is 0."""
+
+    found: bool  #: whether more matches agree with one geometry than random matches would
+    reason: str  #: why not, a sentence; '' where found
+    points1: NDArray[np.float32]  #: N x 2: of image 1; where not found, of the best matches there are
+    points2: NDArray[np.float32]  #: N x 2: of image 2
+    covariances: NDArray[np.float32]  #: N x 3: xx, xy, yy of points2 given points1, squared pixels
+    similarities: NDArray[np.float32]  #: N: correlation of the patches; -1 where a match could not be refined
+    view: Optional[NDArray[np.float64]]  #: 3 x 3: approximate affine map from pixels of image 1 to pixels of image 2; None where not found
+
+
+def matchViews(image1: ArrayLike, image2: ArrayLike, maxFeatures: int = 4000, maxTilt: float = 4,
+               mask1: Optional[ArrayLike] = None, mask2: Optional[ArrayLike] = None) -> ViewMatches:
+    """Matches two images under changed illumination at any zoom, rotation and tilt, as ``cv2.iib.matchViews``.
+
+    Pairs that match as they are take no longer than detection, description, matching and :func:`propagateMatches`. Otherwise views of both
+    images are simulated: reduced by up to 4, rotated, tilted.
+
+    :param image1: as IIBDescriptorExtractor takes it; so is `image2`.
+    :param maxFeatures: keypoints of each image, at most; 0 keeps all.
+    :param maxTilt: largest tilt that is searched for, 1 to 8: the factor by which one axis is shortened.
+    :param mask1: H x W uint8, 0 where no keypoints are to be found; so is `mask2` of image 2.
+    :raises opencv_iib.error: for images of another type, masks of another size or type, and another maxTilt or maxFeatures.
+    """
+    images = as_image(image1), as_image(image2)  # mistakes of both, before either is described
+    return ViewMatcher(images[0], maxFeatures, maxTilt, mask1).match(images[1], mask2)
+
+
+class ViewMatcher:
+    """Matches one image with many others as :func:`matchViews` does, and computes its views once. Threads may share one."""
+
+    def __init__(self, image1: ArrayLike, maxFeatures: int = 4000, maxTilt: float = 4, mask1: Optional[ArrayLike] = None) -> None:
+        """As of :func:`matchViews`."""
+        self._image = as_image(image1)  # which the core looks at, and does not copy
+        self._core = _core.ViewMatcher.create(self._image, integer(maxFeatures, 'maxFeatures'), number(maxTilt, 'maxTilt'), as_mask(mask1))
+
+    @staticmethod
+    def create(image1: ArrayLike, maxFeatures: int = 4000, maxTilt: float = 4, mask1: Optional[ArrayLike] = None) -> ViewMatcher:
+        """As the class itself."""
+        return ViewMatcher(image1, maxFeatures, maxTilt, mask1)
+
+    def match(self, image2: ArrayLike, mask2: Optional[ArrayLike] = None) -> ViewMatches:
+        """As matchViews. The GIL is released meanwhile."""
+        found, reason, view, *rows = self._core.match(as_image(image2), as_mask(mask2))
+        return ViewMatches(found, reason, *float_rows(*rows), view)
