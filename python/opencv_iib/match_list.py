@@ -150,7 +150,7 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
     crew, masks, features, folder, out = Threads(thread_count(workers)), Masks(options.mask), Features(options), os.fspath(images), os.fspath(out)
     lens = None if camera is None else as_camera(camera)
     check_is_folder(folder)
-    names = find_images(folder)
+    names = find_images(folder, log)
     listed = {frozenset(pair): pair for pair in from_file(pairs, {name: number for number, name in enumerate(names)})}
     used = {names[number] for pair in listed.values() for number in pair}
     masked = masks.check(sorted(used))

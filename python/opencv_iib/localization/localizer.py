@@ -58,7 +58,11 @@ class Camera(_core.Camera):
         return Camera._of(super().resized(integer(width, 'width'), integer(height, 'height')))
 
     def upright(self, orientation: int) -> Camera:
-        """Of its images, turned upright as EXIF's orientation asks, 1 to 8; of mirrored ones itself."""
+        """Of its images, turned upright as EXIF's orientation asks.
+
+        :param orientation: 1, 3, 6 or 8.
+        :raises opencv_iib.error: for another one: no camera sees a mirrored image.
+        """
         return Camera._of(super().upright(integer(orientation, 'orientation')))
 
     def _values(self) -> tuple[str, int, int, tuple[float, ...]]:
@@ -207,9 +211,10 @@ class Localizer:
         :param prior: camera from world, 4 x 4 or 3 x 4, such as the last image's: only the two images of the map nearest to it
             are compared, and only points within a tenth of the longer side from where the prior has them. If that gives no
             pose, the image is looked for everywhere.
-        :param orientation: how the image is stored, by EXIF, 1 to 8: maps hold upright codes.
+        :param orientation: how the image is stored, by EXIF, 1, 3, 6 or 8: maps hold upright codes.
         :param mask: H x W uint8, 0 where no points are to be found.
-        :raises opencv_iib.error: for an image or mask of another size or type, or an invalid camera.
+        :raises opencv_iib.error: for an image or mask of another size or type, another orientation (no camera sees a mirrored image), or an
+            invalid camera.
         """
         return Location._of(self._core.localize(as_image(image), as_camera(camera), None if prior is None else as_pose(prior),
                                                 integer(orientation, 'orientation'), as_mask(mask)))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import InvalidOption, Path, integer
 from opencv_iib._arrays import as_mask
-from opencv_iib._exif import exif_orientation
+from opencv_iib._exif import orientation_of_photograph
 from opencv_iib._files import check_folder, check_is_folder, read_bytes
 from opencv_iib._images import Masks, decode_grey, in_order
 from opencv_iib._parallel import thread_count
@@ -85,7 +85,7 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
         try:
             data = read_bytes(os.path.join(images, os.fsdecode(name)))
             image = decode_grey(data)
-            found = image, exif_orientation(data) if exif else 1, as_mask(masks.of(os.fsdecode(name), image))
+            found = image, orientation_of_photograph(data, exif), as_mask(masks.of(os.fsdecode(name), image))
             read_any = True
             return found
         except (ValueError, OSError) as e:
@@ -148,7 +148,7 @@ def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Opt
     check_is_folder(map)
     if out is not None:
         _check_new(out, force)
-    names = images_of(images)
+    names = images_of(images, log=log)
     changed = _core.MapUpdate(os.path.realpath(map), '' if out is None else os.path.realpath(out))
 
     def add(name: str, image: NDArray[np.uint8], camera: Camera, orientation: int, mask: Optional[NDArray[np.uint8]]) -> Location:

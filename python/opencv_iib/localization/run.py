@@ -15,12 +15,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core, error
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._exif import exif_focal_length, exif_orientation
+from opencv_iib._exif import exif_focal_length, orientation_of_photograph
 from opencv_iib._files import check_folder, check_is_folder, check_outputs, new_results, plan, read_bytes, write_whole
 from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, is_utf8, read_grey, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import is_open_file, note
+from opencv_iib._upright import BACK
 from opencv_iib.features import check_max_size, reduced, resized_mask
 from opencv_iib.localization.imu_file import by_time, read_imu
 from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Location, as_camera
@@ -34,7 +35,6 @@ AXES = ('x', 'y', 'z', 'rx', 'ry', 'rz')
 
 #: What finds an image: its name, pixels as its file has them, camera, EXIF's orientation and mask.
 Find = Callable[[str, NDArray[np.uint8], Camera, int, Optional[NDArray[np.uint8]]], Location]
-BACK = {6: 8, 8: 6}  # orientations that turn back what these turn upright
 
 
 def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = (), orientation: int = 1) -> Camera:
@@ -46,7 +46,7 @@ def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = 
     :param orientation: of the image, by EXIF: a map's cameras are of upright images.
     :raises ValueError: if there is none.
     """
-    known = [*known, *(camera.upright(BACK[orientation]) for camera in known if orientation in BACK)]
+    known = [*known, *(camera.upright(BACK[orientation]) for camera in known if orientation in (6, 8))]
     focal = exif_focal_length(data, width, height)
     same = tuple(camera for camera in known if (camera.width, camera.height) == (width, height))
     common = _common_camera(same)
@@ -77,7 +77,7 @@ def _common_camera(cameras: tuple[Camera, ...]) -> Optional[Camera]:
 def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], exif: bool, masks: Masks, name: str
             ) -> tuple[Camera, Location]:
     data = read_bytes(os.path.join(folder, name))
-    grey, orientation = decode_grey(data), exif_orientation(data) if exif else 1
+    grey, orientation = decode_grey(data), orientation_of_photograph(data, exif)
     own = camera or find_camera(data, grey.shape[1], grey.shape[0], known, orientation)
     return own, find(name, grey, own, orientation, masks.of(name if folder else os.path.basename(name), grey))
 
@@ -125,14 +125,14 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
     progress.close()
 
 
-def images_of(folder: Path, out: Path = '') -> list[str]:
+def images_of(folder: Path, out: Path = '', log: Callable[[str], None] = note) -> list[str]:
     """Names of the images below a folder, but for those in `out`, where results are.
 
     :raises ValueError: if there are none.
     """
     check_is_folder(folder)
     inside = os.path.relpath(os.path.realpath(out), os.path.realpath(folder)).replace(os.sep, '/') if out else '..'
-    names = [name for name in find_images(folder) if not name.startswith(inside + '/')]
+    names = [name for name in find_images(folder, log) if not name.startswith(inside + '/')]
     if not names:
         raise ValueError(f'no images below {folder}')
     return names
@@ -260,7 +260,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     """
     workers, out = thread_count(workers), os.fspath(out)
     table_alone = out.lower().endswith('.csv') or is_open_file(out)
-    names, times, readings = images_of(images, '' if table_alone else out), {}, None
+    names, times, readings = images_of(images, '' if table_alone else out, log), {}, None
     if sequence:
         workers = 1
     if table_alone:
