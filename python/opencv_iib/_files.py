@@ -12,6 +12,7 @@ from opencv_iib import _core
 from opencv_iib._arguments import MissingFile, Path, TakenFile, UnusableName
 from opencv_iib._streams import check_open_file, is_open_file, write_to_open_file
 
+OF_FILE_MANAGERS = {'.DS_Store', 'Thumbs.db', 'desktop.ini'}  #: files that they write into folders that they show
 PART = '.iib-'  #: how the folder's name begins that results are written to, within that of the results
 RECORD = '.made-by-opencv-iib'  #: a file in both: which command has written which files, of which size and time; all others are the user's
 
@@ -72,12 +73,17 @@ def check_outputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
                 raise OSError(str(e)) from None
 
 
-def check_folder(out: Path, inputs: Iterable[Path] = ()) -> None:
+def check_folder(out: Path, inputs: Iterable[Path] = (), others: str = '') -> None:
     """Of a folder to be written, which is made if it is missing, as are those that it is in.
 
+    :param others: what may be written in place of a folder.
     :raises TakenFile: for one whose files are replaced, with something in it that is read.
-    :raises UnusableName: where it or one that it would be in is a file.
+    :raises UnusableName: where it or one that it would be in is a file; for a new one whose name ends like that of a file.
     """
+    suffix = os.path.splitext(os.fspath(out))[1]
+    if is_open_file(os.fspath(out)) or (suffix[1:2].isalpha() and not os.path.lexists(out)):
+        raise UnusableName(f'{os.fspath(out)} cannot be written: give the name of a folder{others}; one with {suffix or "such a name"} must be '
+                           'there before')
     above = os.path.realpath(out)
     while not os.path.lexists(above) and os.path.dirname(above) != above:
         above = os.path.dirname(above)

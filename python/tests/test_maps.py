@@ -121,6 +121,13 @@ class Maps(OnWall):
         self.check(Localizer(made).localize(photograph(wall(3), pose(*self.truth['c'])), CAMERA))
         self.assertRegex(Localizer(made).localize(self.grey(), CAMERA).reason, 'too few')  # recommended points would be seen
 
+    def test_nothing_is_said_with_quiet(self):
+        arguments = 'map', '--model', self.model, '--images', self.images, '--points', '300', '--out', self.path('map')
+        os.makedirs(arguments[-1])
+        Path(arguments[-1], '.DS_Store').touch()  # which is no map
+        for more in ((), ('--force',)):
+            self.assertEqual(run_command(*arguments, '--quiet', *more), (0, '', ''))
+
     def test_an_interrupted_map(self):
         images, count = [], 40
         for i in range(count):

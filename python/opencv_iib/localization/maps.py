@@ -13,7 +13,7 @@ from opencv_iib import _core
 from opencv_iib._arguments import InvalidOption, Path, integer
 from opencv_iib._arrays import as_mask
 from opencv_iib._exif import orientation_of_photograph
-from opencv_iib._files import check_folder, check_is_folder, read_bytes
+from opencv_iib._files import OF_FILE_MANAGERS, check_folder, check_is_folder, read_bytes
 from opencv_iib._images import Masks, decode_grey, in_order
 from opencv_iib._parallel import thread_count
 from opencv_iib._progress import Progress
@@ -35,7 +35,7 @@ def _count(file: str) -> int:
 
 def _check_new(out: Path, force: bool) -> None:
     check_folder(out)
-    if os.path.isdir(out) and os.listdir(out) and not force:
+    if os.path.isdir(out) and not OF_FILE_MANAGERS.issuperset(os.listdir(out)) and not force:
         raise FileExistsError(f'{out} is there already: choose another folder, or pass force (--force) to replace a map')
 
 
