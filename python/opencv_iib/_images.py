@@ -97,18 +97,10 @@ def read_grey(path: Path) -> np.ndarray:
     return decode_grey(read_bytes(path))
 
 
-def read_colour(path: Path) -> np.ndarray:
-    """H x W x 3 uint8, BGR; otherwise as read_grey.
-
-    :raises ValueError: naming the file.
-    """
-    return read_with_orientation(path)[0]
-
-
 def read_with_orientation(path: Path, exif: bool = True, of_camera: bool = False) -> tuple[np.ndarray, int]:
-    """As read_colour, and how the file stores the image, by its EXIF data; without `exif`, 1.
+    """H x W x 3 uint8, BGR, otherwise as read_grey; and how the file stores the image, by its EXIF data, or 1 without `exif`.
 
-    :param of_camera: raises ValueError for a mirrored image, too.
+    :raises ValueError: naming the file; with `of_camera` also for a mirrored image.
     """
     try:
         data = read_bytes(path)
@@ -314,7 +306,10 @@ def write_picture(path: Path, picture: np.ndarray, *pages: np.ndarray, no_data: 
 
 def can_be(text: str, dtype: np.dtype) -> bool:
     """Whether a pixel of this type can have a value: -9999 is none of 8 bits without a sign."""
-    value = float(text)
+    try:
+        value = float(text)
+    except ValueError:
+        return False
     if dtype.kind == 'f':
         return bool(np.isnan(value) or abs(value) <= np.finfo(dtype).max)
     return value.is_integer() and np.iinfo(dtype).min <= value <= np.iinfo(dtype).max

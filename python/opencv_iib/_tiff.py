@@ -1,7 +1,6 @@
 """TIFF files by tifffile: their pages, what GDAL and GeoTIFF say of these, and how they are written."""
 from __future__ import annotations
 
-import contextlib
 import io
 import logging
 from typing import Any, Callable, NamedTuple, Sequence
@@ -25,7 +24,7 @@ class Pages(NamedTuple):
 
     pages: Sequence[np.ndarray]  #: all of one shape: H x W, or with the channels last, BGR and alpha where they are 3 or 4
     left_out: int = 0  #: pages of another shape or type, beside those that say that they are reduced or a mask
-    no_data: str = ''  #: what GDAL has written of pixels without data: a number
+    no_data: str = ''  #: what GDAL has written of the value of pixels without data, a number if it is right
     geo: Sequence[Entry] = ()  #: where the pixels are on the Earth
 
 
@@ -58,13 +57,7 @@ def read_tiff(data: bytes, decode: Decode, first_alone: bool = False) -> Pages:
         raise ValueError(f'the image is damaged or cut off, or not one that tifffile reads: {e}') from None
     same = [page for page in read if page.shape == read[0].shape and page.dtype == read[0].dtype]
     right = all(kind == GEO[tag] and (kind == ASCII or np.isfinite(values).all()) for tag, kind, values in geo)
-    return Pages(same, len(read) - len(same), no_data if _is_number(no_data) else '', geo if right else ())
-
-
-def _is_number(text: str) -> bool:
-    with contextlib.suppress(ValueError):
-        return bool(text) and float(text) is not None
-    return False
+    return Pages(same, len(read) - len(same), no_data, geo if right else ())
 
 
 def _page(page: Any, data: bytes, decode: Decode) -> np.ndarray:

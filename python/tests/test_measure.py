@@ -517,7 +517,7 @@ class Align(Commands):
 
     @NEEDS_TIFFFILE
     def test_no_data_that_no_pixel_can_have_tells_nothing(self):
-        for dtype, text in ((np.uint8, '-9999'), (np.uint8, 'nan'), (np.float32, '1e39')):
+        for dtype, text in ((np.uint8, '-9999'), (np.uint8, 'nan'), (np.float32, '1e39'), (np.uint16, 'none')):
             pair, = self.shifted(dtype)
             reference, image, _, (part,) = pair
             write_picture(image, part, no_data=text)
