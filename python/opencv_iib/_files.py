@@ -76,14 +76,13 @@ def check_outputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
 def check_folder(out: Path, inputs: Iterable[Path] = (), others: str = '') -> None:
     """Of a folder to be written, which is made if it is missing, as are those that it is in.
 
-    :param others: what may be written in place of a folder.
+    :param others: what else may be given, for the message.
     :raises TakenFile: for one whose files are replaced, with something in it that is read.
     :raises UnusableName: where it or one that it would be in is a file; for a new one whose name ends like that of a file.
     """
     suffix = os.path.splitext(os.fspath(out))[1]
     if is_open_file(os.fspath(out)) or (suffix[1:2].isalpha() and not os.path.lexists(out)):
-        raise UnusableName(f'{os.fspath(out)} cannot be written: give the name of a folder{others}; one with {suffix or "such a name"} must be '
-                           'there before')
+        raise UnusableName(f'{os.fspath(out)} cannot be written: known are a folder{others}; one with a suffix must be there before')
     above = os.path.realpath(out)
     while not os.path.lexists(above) and os.path.dirname(above) != above:
         above = os.path.dirname(above)

@@ -270,7 +270,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     if table_alone:
         check_outputs([out], read)
     else:
-        check_folder(out, read, ', of a table in .csv, or - for it')
+        check_folder(out, read, ', X.csv and -')
     if imu is not None:
         readings = read_imu(os.fspath(imu))
         times = by_time(names, readings)
