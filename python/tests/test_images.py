@@ -155,9 +155,9 @@ class Files(Collection):
         image = np.arange(600, dtype=np.uint16).reshape(20, 30)
         entries = [(256, 3, 30), (257, 3, 20), (258, 3, 16), (259, 3, 1), (262, 3, 1), (273, 4, 8), (277, 3, 1), (278, 3, 20), (279, 4, 1200)]
         for orientation in range(1, 9):
-            told = sorted([*entries, (274, 3, orientation)])
-            data = b'II*\0' + struct.pack('<I', 1208) + image.tobytes() + struct.pack('<H', len(told))
-            data += b''.join(struct.pack('<HHII', tag, kind, 1, value) for tag, kind, value in told) + bytes(4)
+            tags = sorted([*entries, (274, 3, orientation)])
+            data = b'II*\0' + struct.pack('<I', 1208) + image.tobytes() + struct.pack('<H', len(tags))
+            data += b''.join(struct.pack('<HHII', tag, kind, 1, value) for tag, kind, value in tags) + bytes(4)
             self.assertEqual(exif_orientation(data), orientation)
             np.testing.assert_array_equal(decode_first(data), image)
             if tifffile:
