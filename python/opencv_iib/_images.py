@@ -174,6 +174,7 @@ def in_8_bits(image: np.ndarray, colour: bool) -> np.ndarray:
     return _with_channels(_scaled(image), colour)
 
 
+@np.errstate(invalid='ignore', over='ignore')  # of NaN and infinity, and of limits beyond the largest number
 def _scaled(image: np.ndarray) -> np.ndarray:
     """Other numbers scaled from their own range, of which a few dead pixels are no part; NaN becomes 0."""
     if image.dtype == np.uint8:
@@ -184,12 +185,11 @@ def _scaled(image: np.ndarray) -> np.ndarray:
     values = colours[np.isfinite(colours)]
     if not values.size:
         raise ValueError('the image holds no finite number')
-    with np.errstate(invalid='ignore', over='ignore'):  # of infinity, and of limits beyond the largest number
-        low, high = map(float, np.percentile(values[::1 + values.size // 1000000], (.01, 99.99)))
-        if high > low:
-            values = values[(values >= 2 * low - high) & (values <= 2 * high - low)]
-        low, high = float(values.min()), float(values.max())
-        return np.nan_to_num(np.rint((image - low) * (255 / ((high - low) or 1))).clip(0, 255)).astype(np.uint8)
+    low, high = map(float, np.percentile(values[::1 + values.size // 1000000], (.01, 99.99)))
+    if high > low:
+        values = values[(values >= 2 * low - high) & (values <= 2 * high - low)]
+    low, high = float(values.min()), float(values.max())
+    return np.nan_to_num(np.rint((image - low) * (255 / ((high - low) or 1))).clip(0, 255)).astype(np.uint8)
 
 
 def _with_channels(image: np.ndarray, colour: bool) -> np.ndarray:

@@ -49,6 +49,8 @@ def read_tiff(data: bytes, decode: Decode, first_alone: bool = False) -> Pages:
         with tifffile.TiffFile(io.BytesIO(data)) as tiff:
             first = tiff.pages[0]
             whole = [first] if first_alone else [first, *(page for page in tiff.pages[1:] if not page.is_reduced and not page.is_mask)]
+            if not first.size:
+                raise ValueError('it has no pixels')
             read = [_page(page, data, decode) for page in whole]
             tags = [first.tags.get(tag) for tag in GEO]
             geo = [(tag.code, int(tag.dtype), tag.value if isinstance(tag.value, (str, tuple)) else (tag.value,)) for tag in tags if tag is not None]

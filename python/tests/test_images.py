@@ -89,6 +89,7 @@ class Files(Collection):
         for values in ((1e30, np.inf), (3e38, -3e38), (-np.inf, np.nan)):
             wild = grey.astype(np.float32)
             wild[5, 5:7] = values
+            wild.view(np.uint32)[5, 5] |= 0x7F800001 if np.isnan(values).any() else 0  # NaN that signals
             file.write_bytes(encoded(wild, '.tif'))
             wide = np.where(grey < 99, np.float32(values[0]), np.float32(values[1]))
             with warnings.catch_warnings():
@@ -144,6 +145,9 @@ class Files(Collection):
             for largest in (2**32, -1):
                 with mock.patch('opencv_iib._tiff.LARGEST', largest):
                     np.testing.assert_array_equal(decode_all(tiff_bytes([image])).pages, [image])
+        five, width = tiff_bytes([image]), struct.Struct('<HHII')
+        with self.assertRaisesRegex(ValueError, 'it has no pixels'):
+            decode_grey(five.replace(width.pack(256, 4, 1, 60), width.pack(256, 4, 1, 0)).replace(width.pack(256, 3, 1, 60), width.pack(256, 3, 1, 0)))
         two = tiff_bytes([image[..., :2]])
         with mock.patch.dict('sys.modules', tifffile=None):
             np.testing.assert_array_equal(decode_first(plain.getvalue()), grey)
