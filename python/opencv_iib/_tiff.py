@@ -15,6 +15,7 @@ GEO = {PIXEL_SCALE: DOUBLE, TIE_POINTS: DOUBLE, TO_MODEL: DOUBLE, **dict(zip(GEO
 NO_DATA = 0xA481  # GDAL's
 AS_STORED = 1, 2  # by PHOTOMETRIC: grey from black on, and RGB
 LARGEST = 2**32 - 2**25  # bytes of a file whose places have 32 bits
+LARGEST_SIDE = 1 << 20  # as of cv2: a damaged file of 2 kB may say that it has more
 Decode = Callable[[bytes], np.ndarray]
 Entry = tuple[int, int, Any]  #: of a TIFF directory: tag, type, and numbers or text
 
@@ -49,8 +50,6 @@ def read_tiff(data: bytes, decode: Decode, first_alone: bool = False) -> Pages:
         with tifffile.TiffFile(io.BytesIO(data)) as tiff:
             first = tiff.pages[0]
             whole = [first] if first_alone else [first, *(page for page in tiff.pages[1:] if not page.is_reduced and not page.is_mask)]
-            if not first.size:
-                raise ValueError('it has no pixels')
             read = [_page(page, data, decode) for page in whole]
             tags = [first.tags.get(tag) for tag in GEO]
             geo = [(tag.code, int(tag.dtype), tag.value if isinstance(tag.value, (str, tuple)) else (tag.value,)) for tag in tags if tag is not None]
@@ -63,6 +62,8 @@ def read_tiff(data: bytes, decode: Decode, first_alone: bool = False) -> Pages:
 
 
 def _page(page: Any, data: bytes, decode: Decode) -> np.ndarray:
+    if not page.size or max(page.imagewidth, page.imagelength) > LARGEST_SIDE:
+        raise ValueError(f'it has {page.imagewidth} x {page.imagelength} pixels')
     known_to_cv2 = page.samplesperpixel in (1, 3, 4)
     if not known_to_cv2 or (page.bitspersample in (8, 16, 32, 64) and (PHOTOMETRIC not in page.tags or page.photometric in AS_STORED)):
         try:  # cv2 multiplies colours by their alpha

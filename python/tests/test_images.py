@@ -146,8 +146,9 @@ class Files(Collection):
                 with mock.patch('opencv_iib._tiff.LARGEST', largest):
                     np.testing.assert_array_equal(decode_all(tiff_bytes([image])).pages, [image])
         five, width = tiff_bytes([image]), struct.Struct('<HHII')
-        with self.assertRaisesRegex(ValueError, 'it has no pixels'):
-            decode_grey(five.replace(width.pack(256, 4, 1, 60), width.pack(256, 4, 1, 0)).replace(width.pack(256, 3, 1, 60), width.pack(256, 3, 1, 0)))
+        for wrong in (0, 1 << 24):
+            with self.assertRaisesRegex(ValueError, f'it has {wrong} x 40 pixels'):
+                decode_grey(five.replace(width.pack(256, 4, 1, 60), width.pack(256, 4, 1, wrong)).replace(width.pack(256, 3, 1, 60), width.pack(256, 4, 1, wrong)))
         two = tiff_bytes([image[..., :2]])
         with mock.patch.dict('sys.modules', tifffile=None):
             np.testing.assert_array_equal(decode_first(plain.getvalue()), grey)
