@@ -20,7 +20,7 @@ from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib.features import MAX_POINTS, check_max_size
 from opencv_iib.localization.localizer import AnyCamera, Camera, Location
-from opencv_iib.localization.run import at_size, images_of, locate
+from opencv_iib.localization.run import images_of, locate
 
 
 LEFT_OUT = ': left out of the map'
@@ -152,10 +152,9 @@ def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Opt
     changed = _core.MapUpdate(os.path.realpath(map), '' if out is None else os.path.realpath(out))
 
     def add(name: str, image: NDArray[np.uint8], camera: Camera, orientation: int, mask: Optional[NDArray[np.uint8]]) -> Location:
-        return at_size(max_size, lambda image, camera, mask: Location._of(changed.add(name, image, camera, orientation, as_mask(mask))),
-                       image, camera, mask)
+        return Location._of(changed.add(name, image, camera, orientation, as_mask(mask)))
 
-    for name, own, location in locate(add, changed.cameras(), images, names, camera, workers, log, exif, mask):
+    for name, own, location in locate(add, changed.cameras(), images, names, camera, workers, log, exif, mask, max_size):
         if own is None or location.reason:
             log(f'{name}: {location if own is None else location.reason}')
     localized, added, dropped = changed.commit()
