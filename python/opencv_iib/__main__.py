@@ -7,9 +7,12 @@ import dataclasses
 import io
 import logging
 import os
+import signal
 import sqlite3
 import sys
-from typing import Any, Callable, Collection, Iterable, NoReturn, Optional, Sequence
+import threading
+import time
+from typing import Any, Callable, Collection, Iterable, Iterator, NoReturn, Optional, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +21,6 @@ from opencv_iib import __version__, error, localization
 from opencv_iib._arguments import InvalidOption
 from opencv_iib._images import FORMATS
 from opencv_iib._parallel import thread_count
-from opencv_iib._start import end_of_start
 from opencv_iib._streams import STANDARD_OUTPUT, is_quiet, note, put, quiet
 from opencv_iib.align import INTERPOLATIONS, align
 from opencv_iib.colmap import hloc
@@ -349,6 +351,27 @@ def _parsed(parser: _Parser, words: Sequence[str]) -> argparse.Namespace:
     return arguments
 
 
+@contextlib.contextmanager
+def _ctrl_c() -> Iterator[None]:
+    """Within it, Ctrl-C ends a command in order. One more does nothing for half a second, and then ends it at once."""
+    pressed: list[float] = []
+
+    def end(*_: Any) -> None:
+        pressed.append(time.monotonic())
+        if len(pressed) == 1:
+            raise KeyboardInterrupt
+        if pressed[-1] - pressed[0] > .5:
+            os._exit(130)
+    ours = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if ours:
+        signal.signal(signal.SIGINT, end)
+    try:
+        yield
+    finally:
+        if ours:  # after Ctrl-C nothing is left to be ended but Python
+            signal.signal(signal.SIGINT, signal.SIG_IGN if pressed else signal.default_int_handler)
+
+
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Runs a command; the exit status."""
     words = sys.argv[1:] if argv is None else argv
@@ -358,11 +381,10 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         command = next((word for word in words[:1] if word in parser.commands), command)
         arguments = _parsed(parser, words)
         _cv2_error()  # the import of cv2 swallows Ctrl-C
-        end_of_start()
         command, run, silent = (vars(arguments).pop(name) for name in ('command', 'run', 'quiet'))
-        goes_on = command in ('colmap', 'align') or getattr(arguments, 'pairs', None) is not None
+        goes_on = command == 'align' or getattr(arguments, 'pairs', None) is not None  # colmap, and match of a list
         thread_count(getattr(arguments, 'workers', None))
-        with quiet(silent):
+        with _ctrl_c(), quiet(silent):
             return int(run(arguments))
     except KeyboardInterrupt:
         note('interrupted' + '; the same command goes on from here' * goes_on)

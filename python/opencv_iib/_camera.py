@@ -57,7 +57,11 @@ class Camera(_core.Camera):
         return Camera._of(super().resized(integer(width, 'width'), integer(height, 'height')))
 
     def upright(self, orientation: int) -> Camera:
-        """Of its images, turned upright as EXIF's orientation asks, 1 to 8; of mirrored ones itself."""
+        """Of its images, turned upright as EXIF's orientation asks.
+
+        :param orientation: 1, 3, 6 or 8.
+        :raises opencv_iib.error: for another one: no camera sees a mirrored image.
+        """
         return Camera._of(super().upright(integer(orientation, 'orientation')))
 
     def _values(self) -> tuple[str, int, int, tuple[float, ...]]:

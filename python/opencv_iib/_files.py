@@ -13,6 +13,7 @@ from opencv_iib import _core
 from opencv_iib._arguments import MissingFile, Path, TakenFile, UnusableName
 from opencv_iib._streams import check_open_file, is_open_file, write_to_open_file
 
+OF_FILE_MANAGERS = {'.DS_Store', 'Thumbs.db', 'desktop.ini'}  #: files that they write into folders that they show
 PART = '.iib-part'  #: the folder that results are written to, within that of the results
 RECORD = '.made-by-opencv-iib'  #: a file in both: which command has written which files; all others are the user's
 
@@ -73,12 +74,16 @@ def check_outputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
                 raise OSError(str(e)) from None
 
 
-def check_folder(out: Path, inputs: Iterable[Path] = ()) -> None:
+def check_folder(out: Path, inputs: Iterable[Path] = (), others: str = '') -> None:
     """Of a folder to be written, which is made if it is missing, as are those that it is in.
 
+    :param others: what else may be given, for the message.
     :raises TakenFile: for one whose files are replaced, with something in it that is read.
-    :raises UnusableName: where it or one that it would be in is a file.
+    :raises UnusableName: where it or one that it would be in is a file; for a new one whose name ends like that of a file.
     """
+    suffix = os.path.splitext(os.fspath(out))[1]
+    if is_open_file(os.fspath(out)) or (suffix[1:2].isalpha() and not os.path.lexists(out)):
+        raise UnusableName(f'{os.fspath(out)} cannot be written: known are a folder{others}; one with a suffix must be there before')
     above = os.path.realpath(out)
     while not os.path.lexists(above) and os.path.dirname(above) != above:
         above = os.path.dirname(above)
@@ -185,7 +190,7 @@ def _files_below(folder: str) -> list[str]:
 def new_results(out: str, command: str, state: str = '') -> Iterator[str]:
     """A folder to write files to, which take their place in that of the results when the block ends without an error.
 
-    Until then earlier results stay there. Nothing is removed or replaced but what the record tells, if it was not changed later.
+    Until then earlier results stay there. Nothing is removed or replaced but what the record lists, if it was not changed later.
 
     :param out: made if it is missing; a link is followed, also if nothing is at its end yet.
     :param command: whose results are replaced.

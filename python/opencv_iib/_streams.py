@@ -2,29 +2,29 @@
 from __future__ import annotations
 
 import contextlib
-import contextvars
 import os
 import sys
 from typing import Iterator, Optional, TextIO
 
 from opencv_iib._arguments import UnusableName
 
-_QUIET = contextvars.ContextVar('quiet', default=False)
+_quiet = False
 
 
 @contextlib.contextmanager
 def quiet(wanted: bool = True) -> Iterator[None]:
-    """Within it, no progress is shown."""
-    token = _QUIET.set(wanted)
+    """Within it, no progress is shown, whichever thread makes it."""
+    global _quiet
+    before, _quiet = _quiet, wanted
     try:
         yield
     finally:
-        _QUIET.reset(token)
+        _quiet = before
 
 
 def is_quiet() -> bool:
     """Whether no progress is to be shown."""
-    return _QUIET.get()
+    return _quiet
 
 
 def put(text: str, stream: Optional[TextIO]) -> None:

@@ -7,7 +7,6 @@ import csv
 import io
 import json
 import os
-import re
 import threading
 from typing import Any, Callable, Collection, Iterator, Optional, Union
 
@@ -16,14 +15,14 @@ import numpy as np
 from opencv_iib import __version__
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._camera import AnyCamera, Camera, as_camera
-from opencv_iib._files import check_folder, check_is_folder, check_outputs, only_writer, output_file, remove_parts, replaced, write_whole
+from opencv_iib._files import OF_FILE_MANAGERS, check_folder, check_is_folder, check_outputs, only_writer, output_file, remove_parts, replaced, write_whole
 from opencv_iib._hdf5 import import_h5py, new_hdf5
 from opencv_iib._images import Masks, check_sizes, find_images
 from opencv_iib._pairs import check_list, pair_name, tiles
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._partial import open_partial, remove_logs
 from opencv_iib._progress import Progress
-from opencv_iib._streams import is_open_file, note
+from opencv_iib._streams import note
 from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.measure import Measured, View, measure
 
@@ -83,7 +82,7 @@ class _Folder:
             if head != COLUMNS:
                 raise FileExistsError(f'{table} is there, and not of this command: choose another folder')
             self.rows = {pair_name(*row[:2]): row for row in rows if len(row) == len(COLUMNS)}
-        elif os.listdir(self._path) != [TABLE + PARTIAL] and not os.path.getsize(table + PARTIAL):
+        elif {*os.listdir(self._path)} - OF_FILE_MANAGERS != {TABLE + PARTIAL} and not os.path.getsize(table + PARTIAL):
             raise FileExistsError(f'{self._path} holds other files: choose another folder')
 
     def check(self, name: str, own: bool) -> bool:
@@ -91,9 +90,9 @@ class _Folder:
 
         :raises FileExistsError: for a file of no pair.
         :raises OSError: for a name that is too long."""
-        for part in name.split('/'):
+        for part in (name + '.csv').split('/'):
             with contextlib.suppress(FileNotFoundError):
-                os.lstat(os.path.join(self._path, part + '.csv'))
+                os.lstat(os.path.join(self._path, part))
         is_there = os.path.lexists(self.file(name))
         if is_there and not own:
             raise FileExistsError(f'{self.file(name)} is there, and of no pair of {TABLE}: move it away, or choose another folder')
@@ -195,9 +194,7 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
     lens = None if camera is None else as_camera(camera)
     check_is_folder(folder)
     is_hdf5 = out.lower().endswith(HDF5)
-    if is_open_file(out) or not is_hdf5 and not os.path.lexists(out) and re.fullmatch(r'\.[a-z]\w*', os.path.splitext(out)[1].lower()):
-        raise InvalidOption(f'{out}: of a list give a folder, or a file whose name ends in {" or ".join(HDF5)}')
-    names = find_images(folder)
+    names = find_images(folder, log)
     chosen, left_out = check_list(pairs, {name: number for number, name in enumerate(names)}, log)
     listed = {frozenset(pair): pair for pair in chosen}
     used = {names[number] for pair in listed.values() for number in pair}
@@ -205,7 +202,7 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
     if is_hdf5:
         check_outputs([out], (pairs, *masked, *(os.path.join(folder, name) for name in used)))
     else:
-        check_folder(out)
+        check_folder(out, others=f', and a file in {" or ".join(HDF5)}')
     check_sizes(folder, sorted(used), masks, lens)
     labels = {pair: pair_name(names[pair[0]], names[pair[1]]) for pair in listed.values()}
     if len(set(labels.values())) < len(labels):
@@ -213,12 +210,12 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
     settings = json.dumps([*(str(value) for name, value in vars(options).items() if name != 'mask'), str(lens), __version__])
     stamps = {name: masks.stamp(os.path.join(folder, name), name) for name in used}
     marks = {pair: [f'{stamps[names[pair[0]]]} {stamps[names[pair[1]]]}', settings] for pair in labels}
-    views, found, told, gone, missing = _Views(folder, masks, features, lens), 0, set[str](), list[str](), []
+    views, found, logged, gone, missing = _Views(folder, masks, features, lens), 0, set[str](), list[str](), []
 
     def fail(label: str, why: str) -> None:
-        if why not in told:
+        if why not in logged:
             log(why)
-        told.add(why)
+        logged.add(why)
         gone.append(label)
 
     file = output_file(out) if is_hdf5 else os.path.join(os.path.realpath(out), TABLE)

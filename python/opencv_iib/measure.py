@@ -180,7 +180,7 @@ class View(NamedTuple):
         """:param name: by which it has its mask.
         :param described: its rows and codes, if they are known.
         :raises ValueError: for a file that is no image, or of another size than its camera's or its mask."""
-        stored, orientation = read_with_orientation(path, features.options.exif)
+        stored, orientation = read_with_orientation(path, features.options.exif, of_camera=lens is not None)
         height, width = stored.shape[:2]
         if lens is not None and (lens.width, lens.height) != (width, height):
             raise InvalidOption(f'{path} has {width} x {height} pixels, its camera {lens.width} x {lens.height}: give the '

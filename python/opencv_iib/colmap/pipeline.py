@@ -14,7 +14,7 @@ import opencv_iib
 from opencv_iib import _pairs as pair_lists
 from opencv_iib._arguments import InvalidOption, Path, integer, number, sequence
 from opencv_iib._camera import Camera
-from opencv_iib._exif import exif_focal_length, exif_orientation, gps_place
+from opencv_iib._exif import exif_focal_length, gps_place, orientation_of_photograph
 from opencv_iib._files import check_is_folder, check_outputs, only_writer, output_file, read_bytes
 from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, is_listable, is_utf8
 from opencv_iib._parallel import Cluster, Crew, Threads, in_parallel, thread_count
@@ -116,7 +116,7 @@ def describe_image(folder: str, options: Options, name: str
         raise ValueError('its name is not UTF-8')
     data = read_bytes(os.path.join(folder, name))
     image = decode_grey(data)
-    rows, codes = _features(options.features)(image, exif_orientation(data) if options.features.exif else 1,
+    rows, codes = _features(options.features)(image, orientation_of_photograph(data, options.features.exif),
                                               Masks(options.features.mask).of(name, image))
     height, width = image.shape
     camera = options.camera_for(name)
@@ -296,7 +296,7 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     options.check()
     images, database = os.fspath(images), output_file(os.fspath(database))
     check_is_folder(images)
-    names = find_images(images)
+    names = find_images(images, log)
     if not names:
         raise ValueError(f'no images below {images}')
     left_out = 0  # lines

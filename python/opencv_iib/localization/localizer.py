@@ -117,9 +117,10 @@ class Localizer:
         :param prior: camera from world, 4 x 4 or 3 x 4, such as the last image's: only the two images of the map nearest to it
             are compared, and only points within a tenth of the longer side from where the prior has them. If that gives no
             pose, the image is looked for everywhere.
-        :param orientation: how the image is stored, by EXIF, 1 to 8: maps hold upright codes.
+        :param orientation: how the image is stored, by EXIF, 1, 3, 6 or 8: maps hold upright codes.
         :param mask: H x W uint8, 0 where no points are to be found.
-        :raises opencv_iib.error: for an image or mask of another size or type, or an invalid camera.
+        :raises opencv_iib.error: for an image or mask of another size or type, another orientation (no camera sees a mirrored image), or an
+            invalid camera.
         """
         return Location._of(self._core.localize(as_image(image), as_camera(camera), None if prior is None else as_pose(prior),
                                                 integer(orientation, 'orientation'), as_mask(mask)))

@@ -58,7 +58,11 @@ TEST_F(Localization, of_files_that_store_the_image_turned)
             EXPECT_LT(cv::norm(seen[i] - location.pixels[i]), 2);
         EXPECT_FALSE(localizer.localize(stored, camera).found);
     }
-    EXPECT_NE("", messageOf([&] { localizer.localize(image, CAMERA, nullptr, 9); }));
+    for (int orientation : {2, 4, 5, 7, 9})  // mirrored, and none
+    {
+        EXPECT_NE("", messageOf([&] { localizer.localize(image, CAMERA, nullptr, orientation); }));
+        EXPECT_NE("", messageOf([&] { CAMERA.upright(orientation); }));
+    }
 }
 
 TEST_F(Localization, looks_at_what_a_mask_allows)
