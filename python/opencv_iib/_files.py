@@ -185,7 +185,7 @@ def _files_below(folder: str) -> list[str]:
 def new_results(out: str, command: str, state: str = '') -> Iterator[str]:
     """A folder to write files to, which take their place in that of the results when the block ends without an error.
 
-    Until then earlier results stay there. Nothing is removed or replaced but what the record tells, if it was not changed later.
+    Until then earlier results stay there. Nothing is removed or replaced but what the record lists, if it was not changed later.
 
     :param out: made if it is missing; a link is followed, also if nothing is at its end yet.
     :param command: whose results are replaced.

@@ -91,9 +91,9 @@ class _Folder:
 
         :raises FileExistsError: for a file of no pair.
         :raises OSError: for a name that is too long."""
-        for part in name.split('/'):
+        for part in (name + '.csv').split('/'):
             with contextlib.suppress(FileNotFoundError):
-                os.lstat(os.path.join(self._path, part + '.csv'))
+                os.lstat(os.path.join(self._path, part))
         is_there = os.path.lexists(self.file(name))
         if is_there and not own:
             raise FileExistsError(f'{self.file(name)} is there, and of no pair of {TABLE}: move it away, or choose another folder')
@@ -213,12 +213,12 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
     settings = json.dumps([*(str(value) for name, value in vars(options).items() if name != 'mask'), str(lens), __version__])
     stamps = {name: masks.stamp(os.path.join(folder, name), name) for name in used}
     marks = {pair: [f'{stamps[names[pair[0]]]} {stamps[names[pair[1]]]}', settings] for pair in labels}
-    views, found, told, gone, missing = _Views(folder, masks, features, lens), 0, set[str](), list[str](), []
+    views, found, logged, gone, missing = _Views(folder, masks, features, lens), 0, set[str](), list[str](), []
 
     def fail(label: str, why: str) -> None:
-        if why not in told:
+        if why not in logged:
             log(why)
-        told.add(why)
+        logged.add(why)
         gone.append(label)
 
     file = output_file(out) if is_hdf5 else os.path.join(os.path.realpath(out), TABLE)

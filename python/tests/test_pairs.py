@@ -154,8 +154,8 @@ class Lists(Collection):
         long = 'n' * 248 + '.png'
         shutil.copy(self.images / 'b.png', self.images / long)
         out = self.folder / 'out'
-        self.match(out, f'a.png {long}\na.png b.png\n', 4)
-        self.assertEqual(self.rows(out), [('a.png', 'b.png', True)])
+        self.match(out, f'a.png {long}\n{long} b.png\na.png b.png\n', 4)
+        self.assertEqual(self.rows(out), [(long, 'b.png', True), ('a.png', 'b.png', True)])
 
     def test_hloc_reads_the_file(self):
         if h5py is None:
