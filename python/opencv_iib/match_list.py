@@ -151,7 +151,7 @@ class _Hdf5:
 
     def content(self, measured: Measured) -> bytes:
         arrays, pose = io.BytesIO(), measured.pose
-        posed = {'R': pose.R, 't': pose.t.ravel(), 'covariance': pose.covariance} if pose is not None and pose.found else {}
+        posed: dict[str, Any] = {'R': pose.R, 't': pose.t.ravel(), 'covariance': pose.covariance} if pose is not None and pose.found else {}
         np.savez(arrays, keypoints0=measured.matches.points1, keypoints1=measured.matches.points2,
                  scores=measured.matches.similarities.ravel().clip(0), covariances=measured.matches.covariances, agrees=measured.agree, **posed)
         return arrays.getvalue()

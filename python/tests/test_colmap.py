@@ -311,7 +311,7 @@ class Workers(Collection):
             self.assertEqual((self.lines[1:], self.dump()), (lines, rows))
             status, _, _ = run_command('colmap', self.images, self.database, '--points', '300', '--verify', 'magsac', '--scheduler',
                                        cluster.scheduler_address)
-            self.assertEqual((status, self.dump()), (0, rows))
+            self.assertEqual((status, self.dump()), (4, rows))
             with mock.patch.object(_parallel.Cluster, 'ahead', side_effect=concurrent.futures.CancelledError), \
                     self.assertRaisesRegex(ConnectionError, 'the scheduler has gone'):
                 self.build(client=client)
