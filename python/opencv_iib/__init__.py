@@ -13,7 +13,6 @@ The same from arrays to arrays:
 Classes, their methods and constants have the names of ``cv2.iib``; functions from arrays to arrays have Python's. The OpenCV
 inside is its own: nothing but arrays and plain values passes between it and cv2.
 """
-from opencv_iib import _start  # first: the rest takes longer
 from opencv_iib import _core, _methods
 from opencv_iib._core import error
 from opencv_iib._arguments import integer

@@ -7,9 +7,12 @@ import dataclasses
 import io
 import logging
 import os
+import signal
 import sqlite3
 import sys
-from typing import Any, Callable, Collection, Iterable, NoReturn, Optional, Sequence
+import threading
+import time
+from typing import Any, Callable, Collection, Iterable, Iterator, NoReturn, Optional, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +20,7 @@ from numpy.typing import NDArray
 from opencv_iib import __version__, error, localization
 from opencv_iib._arguments import InvalidOption
 from opencv_iib._images import FORMATS
-from opencv_iib._start import end_of_start
+from opencv_iib._parallel import thread_count
 from opencv_iib._streams import STANDARD_OUTPUT, is_quiet, note, put, quiet
 from opencv_iib.align import INTERPOLATIONS, align
 from opencv_iib.colmap import hloc
@@ -32,7 +35,7 @@ from opencv_iib.match_list import match_list
 from opencv_iib.measure import match_images
 
 STATUS = ('status: 0; 1 for an error; 2 for a mistake in the command line; 3 where nothing was found (no match, no pose, no image aligned or '
-          'localized), 4 where some images or pairs were, or map left some out; 130 after Ctrl-C')
+          'localized), 4 where some images or pairs were, or map or colmap left some out; 130 after Ctrl-C')
 CAMERA = 'MODEL,WIDTH,HEIGHT,PARAMS'
 
 
@@ -123,7 +126,7 @@ def _parser() -> _Parser:
     command.add_argument('--images', metavar='FOLDER', help='that the names are of')
     command.add_argument('--workers', type=int, metavar='N', help='threads, of a list (one a core)')
     command.add_argument('--out', default='matches.csv', help='file to write, a line a match; also .json and .npz, and - for standard output '
-                         '(%(default)s); of a list a folder, or a file in .h5')
+                         '(%(default)s); of a list a folder, or a file in .h5 or .hdf5')
     command.add_argument('--picture', help='picture to write')
     command.add_argument('--camera', dest='cameras', action='append', default=[], metavar=CAMERA, type=_camera,
                          help="find the pose too, with COLMAP's name and parameters of the camera; twice for two cameras")
@@ -252,7 +255,9 @@ def _share(count: int, total: int) -> int:
 def _colmap(arguments: argparse.Namespace) -> int:
     with _client(vars(arguments).pop('scheduler')) as client:
         options = _take(Options, arguments, features=_take(FeatureOptions, arguments))
-        return _told(arguments.database, _call(build_database, arguments, options=options, client=client))
+        counts = _call(build_database, arguments, options=options, client=client)
+        _told(arguments.database, counts)
+        return SOME_FOUND if counts['failed'] or 'lines left out' in counts else 0
 
 
 def _hloc(arguments: argparse.Namespace) -> int:
@@ -283,7 +288,10 @@ def _localize_stream(arguments: argparse.Namespace) -> int:
         raise InvalidOption('--images - needs standard input and output, and one is not open')
     for stream in (sys.stdin, sys.stdout):
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(encoding=sys.getfilesystemencoding(), errors=sys.getfilesystemencodeerrors())  # a path may be any bytes
+            encoding = sys.getfilesystemencoding()
+            if stream is sys.stdin and encoding == 'utf-8':
+                encoding = 'utf-8-sig'  # what Windows' shells write begins with a mark
+            stream.reconfigure(encoding=encoding, errors=sys.getfilesystemencodeerrors())  # a path may be any bytes
     count = total = 0
     for line, found in localization.localize_stream(
             arguments.map, sys.stdin, arguments.camera, arguments.lines, arguments.max_size, arguments.exif, arguments.mask):
@@ -332,21 +340,54 @@ def _say(text: str, out: str = '') -> None:
         put(text + '\n', sys.stdout)
 
 
+def _parsed(parser: _Parser, words: Sequence[str]) -> argparse.Namespace:
+    """Images may also stand behind options."""
+    arguments, rest = parser.parse_known_args(words)
+    images: Any = vars(arguments).get('pair', vars(arguments).get('images'))
+    if rest and (not isinstance(images, list) or any(word.startswith('-') for word in rest)):
+        parser.error(f'unrecognized arguments: {" ".join(rest)}')
+    if rest:
+        images += rest
+    return arguments
+
+
+@contextlib.contextmanager
+def _ctrl_c() -> Iterator[None]:
+    """Within it, Ctrl-C ends a command in order. One more does nothing for half a second, and then ends it at once."""
+    pressed: list[float] = []
+
+    def end(*_: Any) -> None:
+        pressed.append(time.monotonic())
+        if len(pressed) == 1:
+            raise KeyboardInterrupt
+        if pressed[-1] - pressed[0] > .5:
+            os._exit(130)
+    ours = threading.current_thread() is threading.main_thread() and signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    if ours:
+        signal.signal(signal.SIGINT, end)
+    try:
+        yield
+    finally:
+        if ours:  # after Ctrl-C nothing is left to be ended but Python
+            signal.signal(signal.SIGINT, signal.SIG_IGN if pressed else signal.default_int_handler)
+
+
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Runs a command; the exit status."""
     words = sys.argv[1:] if argv is None else argv
-    command = 'opencv-iib'
+    command, goes_on = 'opencv-iib', False
     try:
         parser = _parser()
         command = next((word for word in words[:1] if word in parser.commands), command)
-        arguments = parser.parse_args(words)
+        arguments = _parsed(parser, words)
         _cv2_error()  # the import of cv2 swallows Ctrl-C
-        end_of_start()
         command, run, silent = (vars(arguments).pop(name) for name in ('command', 'run', 'quiet'))
-        with quiet(silent):
+        goes_on = command == 'align' or getattr(arguments, 'pairs', None) is not None  # colmap, and match of a list
+        thread_count(getattr(arguments, 'workers', None))
+        with _ctrl_c(), quiet(silent):
             return int(run(arguments))
     except KeyboardInterrupt:
-        note('interrupted' + '; the same command goes on from here' * (command == 'colmap'))
+        note('interrupted' + '; the same command goes on from here' * goes_on)
         return 130
     except BrokenPipeError:  # such as head's, which has what it wants
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # of what is flushed at the end

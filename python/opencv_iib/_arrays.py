@@ -36,7 +36,7 @@ def as_array(value: Any, what: str) -> np.ndarray:
 
 
 def as_matrix(value: Any, what: str) -> np.ndarray:
-    """As as_array, of 2 dimensions, or of 3 with the channels last; of any if it is empty.
+    """As as_array, of 2 dimensions, or of 3 with the channels last.
 
     :raises opencv_iib.error: naming `what`, for what OpenCV's matrices cannot hold.
     """
@@ -47,7 +47,7 @@ def as_matrix(value: Any, what: str) -> np.ndarray:
         raise _core.error(f'{what}: arrays of {array.dtype} are not supported; convert it to uint8, uint16 or float32')
     if array.size >= 1 << 31 and max(array.shape) >= 1 << 31 or array.shape[2:] > (512,):
         raise _core.error(f'{what}: too large, or more than 512 channels')
-    return array
+    return array if array.ndim > 1 else array.reshape(0, 0)
 
 
 _DEPTHS = frozenset(map(np.dtype, ('bool', 'uint8', 'int8', 'uint16', 'int16', 'int32', 'float32', 'float64')))

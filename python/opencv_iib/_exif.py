@@ -1,27 +1,24 @@
-"""What the heads of image files tell: EXIF data, the pages of TIFF, segments of JPEG."""
+"""What the heads of image files say: EXIF data, segments of JPEG."""
 from __future__ import annotations
 
 import contextlib
 import struct
-from typing import Any, Iterator, Optional, Union
+from typing import Any, Iterator, Optional
 
 import numpy as np
 
 from opencv_iib._files import read_bytes
 
 # Numbers of TIFF's and EXIF's tags.
-SAMPLES, ORIENTATION, NO_DATA = 0x0115, 0x0112, 0xA481  # the last one is GDAL's
-SUBFILE, REDUCED, MASK = 0x00FE, 1, 4  # which kind of page it is, and two of its bits
+PHOTOMETRIC, SAMPLES, ORIENTATION = 0x0106, 0x0115, 0x0112
 EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x8769, 0x920A, 0xA405, 0xA20E, 0xA210
 MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolution
 NOWHERE = 2**32 - 1  #: of a directory: behind the end of any file
 GPS_IFD, LATITUDE_REF, LATITUDE, LONGITUDE_REF, LONGITUDE, ALTITUDE_REF, ALTITUDE = 0x8825, 1, 2, 3, 4, 5, 6
 EARTH = 6371000  # metres, the radius
 BYTE, ASCII, SHORT, LONG, RATIONAL, DOUBLE, LONG8, IFD8 = 1, 2, 3, 4, 5, 12, 16, 18  # TIFF's types, the last two of files of 64 bits
-# GeoTIFF's: metres of a pixel, pixels and where they are on the Earth, or a matrix for both; and the keys of its coordinates.
-PIXEL_SCALE, TIE_POINTS, TO_MODEL, *GEO_KEYS = 33550, 33922, 34264, 34735, 34736, 34737
+MIRRORED = 2, 4, 5, 7  #: EXIF's orientations of images that are stored mirrored
 START_OF_SCAN, APP1 = 0xda, 0xe1  # JPEG's markers
-Entry = tuple[int, int, Any]  #: of a TIFF directory: tag, type, and numbers or text
 TIFF = (b'II*\0', b'MM\0*', b'II+\0', b'MM\0+')  # how files begin; the last two have places of 64 bits
 
 
@@ -64,13 +61,13 @@ def _exif(data: bytes) -> bytes:
     return b''
 
 
-def _order(tiff: Union[bytes, bytearray]) -> str:
+def _order(tiff: bytes) -> str:
     """Of its bytes, as struct names it."""
     return '<' if tiff[:1] == b'I' else '>'
 
 
-def _directory(tiff: bytes, at: int) -> tuple[dict[int, Any], int]:
-    """By tag, the numbers or the text of each entry of a TIFF directory, and where the next one begins, or 0.
+def _directory(tiff: bytes, at: int) -> dict[int, Any]:
+    """By tag, the finite numbers or the text of each entry of a TIFF directory.
 
     :raises struct.error: for one that is cut off.
     """
@@ -90,20 +87,20 @@ def _directory(tiff: bytes, at: int) -> tuple[dict[int, Any], int]:
                 values: Any = _unpacked(order + form, tiff, place)
                 if kind == RATIONAL:
                     values = [above / below if below else 0 for above, below in zip(values[::2], values[1::2])]
-                found[tag] = values[0].split(b'\0')[0].decode('latin-1').strip() if kind == ASCII else values
-    following = tiff[end:end + room]
-    return found, struct.unpack(order + word, following)[0] if len(following) == room else 0
+                if kind != DOUBLE or np.isfinite(values).all():
+                    found[tag] = values[0].split(b'\0')[0].decode('latin-1').strip() if kind == ASCII else values
+    return found
 
 
 def _unpacked(form: str, tiff: bytes, place: int) -> tuple[Any, ...]:
     """:raises struct.error: also for a place that no computer has."""
-    return struct.unpack_from(form, tiff, min(place, len(tiff)))
+    return struct.unpack_from(form, tiff, place if 0 <= place < len(tiff) else len(tiff))
 
 
 def _first_directory(tiff: bytes) -> dict[int, Any]:
     """:raises struct.error: if there is none."""
     word, at = ('Q', 8) if tiff[:4] in TIFF[2:] else ('I', 4)
-    return _directory(tiff, struct.unpack_from(_order(tiff) + word, tiff, at)[0])[0]
+    return _directory(tiff, struct.unpack_from(_order(tiff) + word, tiff, at)[0])
 
 
 def _number(entries: dict[int, Any], tag: int, default: float) -> float:
@@ -112,70 +109,12 @@ def _number(entries: dict[int, Any], tag: int, default: float) -> float:
     return default if isinstance(values, str) else values[0]
 
 
-def pages_of_tiff(data: bytes) -> tuple[list[int], int]:
-    """Where their directories begin, and channels of the first; none and 1 for other files, and for the 64-bit kind. What a page after the
-    first says is reduced or a mask is left out."""
-    places, seen = [], set()
-    samples = 1
+def tiff_channels(data: bytes) -> int:
+    """Of a TIFF's first page; 0 if nothing says what they mean."""
     with contextlib.suppress(struct.error):
-        at = struct.unpack_from(_order(data) + 'I', data, 4)[0] if data[:4] in TIFF[:2] else 0
-        while at and at not in seen:
-            seen.add(at)
-            places.append(at)  # also of one that is cut off
-            entries, at = _directory(data, at)
-            if len(places) == 1:
-                samples = int(_number(entries, SAMPLES, 1))
-            elif int(_number(entries, SUBFILE, 0)) & (REDUCED | MASK):
-                places.pop()
-    return places, samples
-
-
-def begin_at(tiff: bytearray, place: int) -> None:
-    """Makes the page whose directory begins there the first one."""
-    struct.pack_into(_order(tiff) + 'I', tiff, 4, place)
-
-
-def no_data(data: bytes) -> str:
-    """What GDAL has written of a TIFF's pixels without data: a number, or ''."""
-    with contextlib.suppress(struct.error, ValueError):
-        if data[:4] in TIFF:
-            text = str(_first_directory(data)[NO_DATA]) if NO_DATA in _first_directory(data) else ''
-            float(text)
-            return text
-    return ''
-
-
-def packed(kind: int, values: Any) -> bytes:
-    """Numbers or a text as an entry of a TIFF directory holds them, least byte first.
-
-    :raises struct.error: for values that are not of the type."""
-    values = values.encode('latin-1') + b'\0' if kind == ASCII else values
-    return struct.pack(f'<{len(values)}{ {ASCII: "B", SHORT: "H", LONG: "I", DOUBLE: "d"}[kind]}', *values)
-
-
-def geo_entries(data: bytes) -> list[Entry]:
-    """By which a GeoTIFF tells where its pixels are on the Earth; none of other files, or those of wrong types."""
-    kinds = {PIXEL_SCALE: DOUBLE, TIE_POINTS: DOUBLE, TO_MODEL: DOUBLE, **dict(zip(GEO_KEYS, (SHORT, DOUBLE, ASCII)))}
-    found: list[Entry] = []
-    with contextlib.suppress(struct.error):
-        entries = _first_directory(data) if data[:4] in TIFF else {}
-        for tag, kind in kinds.items():
-            if tag in entries and isinstance(entries[tag], str) == (kind == ASCII):
-                packed(kind, entries[tag])
-                found.append((tag, kind, entries[tag]))
-        return found
-    return []
-
-
-def geo_entries_of_part(entries: list[Entry], x: int, y: int) -> list[Entry]:
-    """The same of a part of the image that begins at this pixel."""
-    def moved(tag: int, values: Any) -> Any:
-        if tag == TIE_POINTS:
-            return [value - (x, y, 0, 0, 0, 0)[n % 6] for n, value in enumerate(values)]
-        if tag == TO_MODEL and len(values) == 16:
-            return [value + (values[n - 3] * x + values[n - 2] * y if n % 4 == 3 else 0) for n, value in enumerate(values)]
-        return values
-    return [(tag, kind, moved(tag, values)) for tag, kind, values in entries]
+        entries = _first_directory(data)
+        return int(_number(entries, SAMPLES, 1)) if PHOTOMETRIC in entries else 0
+    return 0
 
 
 def exif_orientation(data: bytes) -> int:
@@ -187,28 +126,44 @@ def exif_orientation(data: bytes) -> int:
     return told if 1 <= told <= 8 else 1
 
 
+def orientation_of_photograph(data: bytes, exif: bool = True) -> int:
+    """The same of an image whose pixels a camera's geometry is computed of; without `exif` 1.
+
+    :raises ValueError: also without `exif`, for an image that is stored mirrored: no camera sees its pixels.
+    """
+    orientation = exif_orientation(data)
+    if orientation in MIRRORED:
+        raise ValueError(f'its EXIF data say that it is stored mirrored (orientation {orientation}), and no camera sees a mirrored image: write it '
+                         'as it is seen (exiftran -ai FILE, or magick FILE -auto-orient FILE), or remove the entry if it is wrong (exiftool '
+                         '-Orientation= FILE)')
+    return orientation if exif else 1
+
+
 def exif_focal_length(data: bytes, width: int, height: int) -> Optional[float]:
     """Focal length in pixels by a file's EXIF data, by COLMAP's rules; None if they tell none."""
     tiff = _exif(data)
     try:
-        entries = _directory(tiff, int(_number(_first_directory(tiff), EXIF_IFD, NOWHERE)))[0]
+        entries = _directory(tiff, int(_number(_first_directory(tiff), EXIF_IFD, NOWHERE)))
     except struct.error:
         return None
     exif: dict[int, float] = {tag: values[0] for tag, values in entries.items() if not isinstance(values, str)}
-    if exif.get(FOCAL_LENGTH_35MM, 0) > 0:
-        return exif[FOCAL_LENGTH_35MM] / 35.0 * max(width, height)
-    focal, resolution = exif.get(FOCAL_LENGTH, 0), exif.get(PLANE_X_RESOLUTION, 0)
-    return focal * resolution / MILLIMETRES.get(int(exif.get(PLANE_UNIT, 2)), 25.4) or None
+    pixels = exif.get(FOCAL_LENGTH_35MM, 0) / 35.0 * max(width, height)
+    if not pixels > 0:
+        pixels = exif.get(FOCAL_LENGTH, 0) * exif.get(PLANE_X_RESOLUTION, 0) / MILLIMETRES.get(int(exif.get(PLANE_UNIT, 2)), 25.4)
+    return pixels if 0 < pixels < 1e9 else None
 
 
 def gps_place(path: str) -> Optional[np.ndarray]:
-    """Where a file's EXIF data say that it was taken, metres from the Earth's centre; None if they do not."""
+    """Where a file's EXIF data say that it was taken, metres: on the Earth's sphere from its centre, and the height (NaN where they tell none);
+    None if they do not, or say 0, 0, which cameras without a signal write."""
     try:
         tiff = _exif(read_bytes(path))
-        gps = _directory(tiff, int(_number(_first_directory(tiff), GPS_IFD, NOWHERE)))[0]
+        gps = _directory(tiff, int(_number(_first_directory(tiff), GPS_IFD, NOWHERE)))
         latitude, longitude = (np.radians(np.dot(gps[tag], (1, 1 / 60, 1 / 3600)) * (-1 if gps.get(ref) in ('S', 'W') else 1))
                                for tag, ref in ((LATITUDE, LATITUDE_REF), (LONGITUDE, LONGITUDE_REF)))
-        height = _number(gps, ALTITUDE, 0) * (-1 if _number(gps, ALTITUDE_REF, 0) == 1 else 1)
+        height = _number(gps, ALTITUDE, np.nan) * (-1 if _number(gps, ALTITUDE_REF, 0) == 1 else 1)
     except (struct.error, KeyError, TypeError, ValueError, OSError):
         return None
-    return np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)]) * float(EARTH + height)
+    if not (latitude or longitude):
+        return None
+    return EARTH * np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude), height / EARTH])

@@ -4,16 +4,18 @@ from __future__ import annotations
 import json
 import os
 import re
-import tempfile
+import shutil
+import stat
 from contextlib import contextmanager, suppress
-from typing import Any, Iterable, Iterator, Optional
+from typing import Any, Collection, Iterable, Iterator
 
 from opencv_iib import _core
 from opencv_iib._arguments import MissingFile, Path, TakenFile, UnusableName
 from opencv_iib._streams import check_open_file, is_open_file, write_to_open_file
 
-PART = '.iib-'  #: how the folder's name begins that results are written to, within that of the results
-RECORD = '.made-by-opencv-iib'  #: a file in both: which command has written which files, of which size and time; all others are the user's
+OF_FILE_MANAGERS = {'.DS_Store', 'Thumbs.db', 'desktop.ini'}  #: files that they write into folders that they show
+PART = '.iib-part'  #: the folder that results are written to, within that of the results
+RECORD = '.made-by-opencv-iib'  #: a file in both: which command has written which files; all others are the user's
 
 
 def output_file(path: str) -> str:
@@ -72,12 +74,16 @@ def check_outputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
                 raise OSError(str(e)) from None
 
 
-def check_folder(out: Path, inputs: Iterable[Path] = ()) -> None:
+def check_folder(out: Path, inputs: Iterable[Path] = (), others: str = '') -> None:
     """Of a folder to be written, which is made if it is missing, as are those that it is in.
 
+    :param others: what else may be given, for the message.
     :raises TakenFile: for one whose files are replaced, with something in it that is read.
-    :raises UnusableName: where it or one that it would be in is a file.
+    :raises UnusableName: where it or one that it would be in is a file; for a new one whose name ends like that of a file.
     """
+    suffix = os.path.splitext(os.fspath(out))[1]
+    if is_open_file(os.fspath(out)) or (suffix[1:2].isalpha() and not os.path.lexists(out)):
+        raise UnusableName(f'{os.fspath(out)} cannot be written: known are a folder{others}; one with a suffix must be there before')
     above = os.path.realpath(out)
     while not os.path.lexists(above) and os.path.dirname(above) != above:
         above = os.path.dirname(above)
@@ -139,6 +145,16 @@ def replaced(*paths: str) -> Iterator[list[str]]:
             part.discard()
 
 
+def remove_parts(paths: Collection[str]) -> None:
+    """What killed processes were writing, to be put in place of these files. No other may be writing them now."""
+    for folder in {os.path.dirname(path) for path in paths}:
+        with suppress(FileNotFoundError):
+            for name in os.listdir(folder):
+                whole = re.fullmatch(r'(.*)\.\d+-\d+\.tmp', name)
+                if whole and os.path.join(folder, whole[1]) in paths:
+                    os.unlink(os.path.join(folder, name))
+
+
 @contextmanager
 def only_writer(path: str, is_folder: bool = False) -> Iterator[None]:
     """Locks a folder that is there, or a file, which is made if it is missing, and removed if nothing came of it.
@@ -172,9 +188,9 @@ def _files_below(folder: str) -> list[str]:
 
 @contextmanager
 def new_results(out: str, command: str, state: str = '') -> Iterator[str]:
-    """A folder to write files to that were planned, which take their place in that of the results when the block ends without an error.
+    """A folder to write files to, which take their place in that of the results when the block ends without an error.
 
-    Until then earlier results stay there. Nothing is removed or replaced but what the record tells, if it still is as it was written.
+    Until then earlier results stay there. Nothing is removed or replaced but what the record lists, if it was not changed later.
 
     :param out: made if it is missing; a link is followed, also if nothing is at its end yet.
     :param command: whose results are replaced.
@@ -182,97 +198,61 @@ def new_results(out: str, command: str, state: str = '') -> Iterator[str]:
     :raises FileExistsError: for a folder that holds something else, or that another process is writing.
     """
     target = os.path.realpath(out)
-    there, other = _files_below(target), _command(target)
+    part, there, (other, newest, files) = os.path.join(target, PART), _files_below(target), _recorded(target)
     if other not in (None, command):
         raise FileExistsError(f'{out} holds results of {other}: choose another folder')
-    old = _recorded(target, command, there)
+    old = [name for name in there if name in files]
     for name in old:
-        if not _is_as_written(target, name, old):
+        if _is_changed(target, name, newest):
             raise FileExistsError(f'{out} holds {name}, which was changed since it was written: move it away, or choose another folder')
-    killed = {folder for folder, _, name in (name.partition('/') for name in there)
-              if re.fullmatch(re.escape(PART) + r'\w{8}', folder) and (name == RECORD or _core.isPartOf(RECORD, name))}
-    parts = {folder: _recorded(os.path.join(target, folder), command, [name[len(folder) + 1:] for name in there if name.startswith(folder + '/')])
-             for folder in killed}
-    own = [*old, *(f'{folder}/{name}' for folder, names in parts.items() for name in names)]
+    killed = [name for name in there if name.startswith(PART + '/')] if os.path.exists(os.path.join(part, RECORD)) else []
+    own = [*old, *killed, *([RECORD] if other else [])]
     try:
         lock = _core.OutputFolder(target, list(map(os.fsencode, own)))
     except _core.error as e:
         raise FileExistsError(str(e)) from None
-    for folder, names in parts.items():
-        _discard(os.path.join(target, folder), names)
-    part = tempfile.mkdtemp(prefix=PART, dir=target)
     try:
-        _record(part, command, [])
+        _discard(part)
+        os.mkdir(part)
+        _record(part, part, command, 0, [])  # by which a later call knows what a killed one has left
         yield part
-        _publish(part, target, command, old, state)
+        new = [name for name in _files_below(part) if name != RECORD]
+        for name in new:
+            if os.path.lexists(os.path.join(target, name)) and (name not in old or _is_changed(target, name, newest)):
+                raise FileExistsError(f'{os.path.join(target, name)} has come there meanwhile: remove it, or choose another folder')
+        now = max([newest, *(os.lstat(os.path.join(part, name)).st_mtime_ns for name in new)])
+        _record(target, part, command, now, [*old, *new])  # both, until all are there: a process may be killed in between
+        _remove(target, [name for name in old if name == state])
+        for name in sorted(new, key=lambda name: (name == state, name)):
+            os.makedirs(os.path.dirname(os.path.join(target, name)), exist_ok=True)
+            os.replace(os.path.join(part, name), os.path.join(target, name))
+        _remove(target, [name for name in old if name not in new and not _is_changed(target, name, newest)])
+        _record(target, part, command, now, new)
     finally:
-        _discard(part, _recorded(part, command, _files_below(part)))
+        _discard(part)
         del lock
 
 
-def plan(part: str, names: Iterable[str]) -> None:
-    """Tells which files the block of new_results may write: if the process is killed, a later one knows them by that."""
-    with open(os.path.join(part, RECORD), 'a', encoding='ascii') as file:
-        file.writelines(json.dumps([name, None]) + '\n' for name in names)
+def _record(folder: str, part: str, command: str, newest: int, files: list[str]) -> None:
+    """:param newest: time of the newest of the files, nanoseconds: one that is newer was changed by others."""
+    record = os.path.join(part, 'record')
+    write_whole(record, json.dumps({'command': command, 'newest': newest, 'files': files}).encode())
+    os.replace(record, os.path.join(folder, RECORD))
 
 
-def _record(folder: str, command: str, names: Iterable[tuple[str, Optional[str]]]) -> None:
-    lines = [json.dumps(line) + '\n' for line in (command, *names, (RECORD, None))]
-    write_whole(os.path.join(folder, RECORD), ''.join(lines).encode())
+def _recorded(folder: str) -> tuple[Any, int, list[str]]:
+    """What _record has written there; None, 0 and nothing without a record."""
+    with suppress(OSError, ValueError, KeyError, TypeError), open(os.path.join(folder, RECORD), encoding='ascii') as file:
+        record = json.load(file)
+        return record['command'], int(record['newest']), list(record['files'])
+    return None, 0, []
 
 
-def _command(folder: str) -> Any:
-    """Whose record is there; None without one."""
-    with suppress(OSError, ValueError), open(os.path.join(folder, RECORD), encoding='ascii') as file:
-        return json.loads(next(file, 'null'))
-    return None
-
-
-def _recorded(folder: str, command: str, there: Iterable[str]) -> dict[str, set[Optional[str]]]:
-    """Of the files that are there, those that a command has written, or was writing, and their stamps, None if that was not known yet."""
-    stamps: dict[str, set[Optional[str]]] = {}
-    if _command(folder) == command:
-        with suppress(OSError, ValueError, TypeError), open(os.path.join(folder, RECORD), encoding='ascii') as file:
-            next(file)
-            for line in file:  # the last one may be cut off
-                name, stamp = json.loads(line)
-                stamps.setdefault(name, set()).add(stamp)
-    known: dict[str, set[Optional[str]]] = {}
-    for name in there:
-        if name in stamps:
-            known[name] = stamps[name]
-        elif name.endswith('.tmp') and (any(_core.isPartOf(whole, name) for whole in (*stamps, RECORD)) or
-                                        _core.isPartOf('probe', name) and _stamp(folder, name).startswith('0 ')):  # which is OutputFolder's
-            known[name] = {None}
-    return known
-
-
-def _stamp(folder: str, name: str) -> str:
-    """Size and time of a file; '' of one that is not there."""
+def _is_changed(folder: str, name: str, newest: int) -> bool:
     with suppress(FileNotFoundError):
         status = os.lstat(os.path.join(folder, name))
-        return f'{status.st_size} {status.st_mtime_ns}'
-    return ''
-
-
-def _is_as_written(folder: str, name: str, recorded: dict[str, set[Optional[str]]]) -> bool:
-    stamp = _stamp(folder, name)
-    return not stamp or not recorded[name].isdisjoint({None, stamp}) and not os.path.islink(os.path.join(folder, name))
-
-
-def _publish(part: str, target: str, command: str, old: dict[str, set[Optional[str]]], state: str) -> None:
-    new = {name: _stamp(part, name) for name in _files_below(part) if name != RECORD}
-    for name in new:
-        if os.path.lexists(os.path.join(target, name)) and not (name in old and _is_as_written(target, name, old)):
-            raise FileExistsError(f'{os.path.join(target, name)} has come there meanwhile: remove it, or choose another folder')
-    # Both, until all are there: a process may be killed in between.
-    _record(target, command, [*new.items(), *((name, stamp) for name, stamps in old.items() for stamp in stamps)])
-    _remove(target, [name for name in old if name == state])
-    for name in sorted(new, key=lambda name: (name == state, name)):
-        os.makedirs(os.path.dirname(os.path.join(target, name)), exist_ok=True)
-        os.replace(os.path.join(part, name), os.path.join(target, name))
-    _remove(target, [name for name in old if name not in new and name != RECORD and _is_as_written(target, name, old)])
-    _record(target, command, new.items())
+        return stat.S_ISLNK(status.st_mode) or status.st_mtime_ns > newest
+    return False
 
 
 def _remove(folder: str, names: Iterable[str]) -> None:
@@ -285,12 +265,9 @@ def _remove(folder: str, names: Iterable[str]) -> None:
                 os.rmdir(os.path.join(folder, name))
 
 
-def _discard(part: str, names: Iterable[str]) -> None:
-    """What was not published, and last by what it is known."""
-    _remove(part, sorted(names, key=lambda name: name == RECORD))
-    for root, _, _ in os.walk(part, topdown=False):
-        with suppress(OSError):
-            os.rmdir(root)
+def _discard(part: str) -> None:
+    """What was not published."""
+    shutil.rmtree(part, ignore_errors=True)
 
 
 def read_bytes(path: Path) -> bytes:

@@ -1,39 +1,56 @@
 """Image files: which there are, what is read of them, and masks; and how pictures are written."""
 from __future__ import annotations
 
+import collections
 import contextlib
-import io
+import hashlib
 import os
 import re
-import struct
-import zlib
-from typing import Any, Iterable, NoReturn, Optional, Sequence, Union
+from typing import Any, Callable, Iterable, NoReturn, Optional, Sequence
 
 import numpy as np
 
 from opencv_iib._arguments import InvalidOption, MissingFile, Path
-from opencv_iib._exif import ASCII, LONG, NO_DATA, SAMPLES, SHORT, TIFF, Entry, begin_at, exif_orientation, is_cut_off, packed, pages_of_tiff
+from opencv_iib._exif import TIFF, exif_orientation, is_cut_off, orientation_of_photograph, tiff_channels
 from opencv_iib._files import read_bytes, write_whole
+from opencv_iib._streams import note
+from opencv_iib._tiff import Entry, Pages, import_tifffile, read_tiff, tiff_bytes
+from opencv_iib._upright import BACK, upright
 
-SUFFIXES = ('.jpg', '.jpeg', '.png', '.tif', '.tiff', '.bmp', '.webp', '.ppm', '.pgm')
+SUFFIXES = ('.jpg', '.jpeg', '.jpe', '.jfif', '.png', '.tif', '.tiff', '.bmp', '.webp', '.ppm', '.pgm', '.pbm', '.pnm')
+NOT_EVERYWHERE = ('.avif', '.gif', '.heic', '.heif', '.jp2')  #: which some builds of cv2 read
 FORMATS = {'PNG': '.png', 'TIFF': '.tif', 'JPEG': '.jpg'}  #: that pictures are written in, and their suffixes
 IMAGES = (*TIFF, b'\xff\xd8', b'\x89PNG', b'RIFF', b'BM', *(b'P%d' % kind for kind in range(1, 8)))
 
 
-def find_images(folder: Path) -> list[str]:
+def find_images(folder: Path, log: Callable[[str], None] = note) -> list[str]:
     """Paths of images below `folder`, relative to it, with '/', in_order: COLMAP's names.
 
+    :param log: gets a line about images that the installed cv2 does not read.
     :raises OSError: for a folder that cannot be read.
     """
     def fail(why: OSError) -> NoReturn:
         raise type(why)(f'{why.filename} cannot be read: {why.strerror}')
 
-    names = []
+    names, skipped = [], collections.Counter[str]()
     for root, _, files in os.walk(folder, onerror=fail):
         for file in files:
-            if file.lower().endswith(SUFFIXES):
-                names.append(os.path.relpath(os.path.join(root, file), folder).replace(os.sep, '/'))
+            path, suffix = os.path.join(root, file), os.path.splitext(file)[1].lower()
+            if suffix in SUFFIXES or (suffix in NOT_EVERYWHERE and _is_read(path)):
+                names.append(os.path.relpath(path, folder).replace(os.sep, '/'))
+            elif suffix in NOT_EVERYWHERE:
+                skipped[suffix] += 1
+    if skipped:
+        kinds = ', '.join(f'{count} {suffix}' for suffix, count in sorted(skipped.items()))
+        log(f'{os.fspath(folder)}: {sum(skipped.values())} files are skipped, which the installed cv2 does not read ({kinds}): convert them')
     return sorted(names, key=in_order)
+
+
+def _is_read(path: str) -> bool:
+    """Whether cv2 knows the format of a file by how it begins."""
+    with contextlib.suppress(UnicodeError):  # of a name that is not UTF-8
+        return os.path.isfile(path) and bool(import_cv2().haveImageReader(path))
+    return False
 
 
 def in_order(name: str) -> tuple[list[tuple[int, str]], str]:
@@ -42,12 +59,10 @@ def in_order(name: str) -> tuple[list[tuple[int, str]], str]:
 
 
 def stamp(path: str) -> str:
-    """Size and time of a file: others if it was changed."""
-    try:
-        status = os.stat(path)
-    except OSError:
-        return ''
-    return f'{status.st_size} {status.st_mtime_ns}'
+    """Of a file's content, whatever its time; '' of a file that cannot be read."""
+    with contextlib.suppress(OSError, ValueError):
+        return hashlib.blake2b(read_bytes(path), digest_size=16).hexdigest()
+    return ''
 
 
 def is_utf8(name: str) -> bool:
@@ -81,19 +96,14 @@ def read_grey(path: Path) -> np.ndarray:
     return decode_grey(read_bytes(path))
 
 
-def read_colour(path: Path) -> np.ndarray:
-    """H x W x 3 uint8, BGR; otherwise as read_grey.
+def read_with_orientation(path: Path, exif: bool = True, of_camera: bool = False) -> tuple[np.ndarray, int]:
+    """H x W x 3 uint8, BGR, otherwise as read_grey; and how the file stores the image, by its EXIF data, or 1 without `exif`.
 
-    :raises ValueError: naming the file.
+    :raises ValueError: naming the file; with `of_camera` also for a mirrored image.
     """
-    return read_with_orientation(path)[0]
-
-
-def read_with_orientation(path: Path, exif: bool = True) -> tuple[np.ndarray, int]:
-    """As read_colour, and how the file stores the image, by its EXIF data; without `exif`, 1."""
     try:
         data = read_bytes(path)
-        return _decode(data, colour=True), exif_orientation(data) if exif else 1
+        return _decode(data, colour=True), orientation_of_photograph(data, exif) if of_camera else exif_orientation(data) if exif else 1
     except ValueError as e:
         raise ValueError(f'{os.fspath(path)}: {e}') from None
 
@@ -106,62 +116,45 @@ def decode_grey(data: bytes) -> np.ndarray:
 def _decode(data: bytes, colour: bool) -> np.ndarray:
     """:raises ValueError: if it cannot be read, also if it is a JPEG without its end, which cv2 would fill with grey."""
     cv2, image = import_cv2(), None
-    _check(data)
-    mode = (cv2.IMREAD_COLOR if colour else cv2.IMREAD_GRAYSCALE) | cv2.IMREAD_IGNORE_ORIENTATION | cv2.IMREAD_ANYDEPTH
-    # What is not of 8 bits as the file has it. Of TIFF first, where cv2 gives floats in no other way, and prints of that.
-    if data.startswith(TIFF):
-        image = decode_pages(data, first_alone=True)[0]
-    if image is None or (image.dtype == np.uint8 and image.shape[2:] < (5,)):
-        image = _imdecode(data, mode)
-    if image.dtype != np.uint8 and not data.startswith(TIFF):
-        image = _imdecode(data, cv2.IMREAD_UNCHANGED)
+    if not data.startswith(TIFF):
+        image = _imdecode(data, (cv2.IMREAD_COLOR if colour else cv2.IMREAD_GRAYSCALE) | cv2.IMREAD_IGNORE_ORIENTATION | cv2.IMREAD_ANYDEPTH)
+    if image is None or image.dtype != np.uint8:  # what is not of 8 bits as the file has it
+        image = decode_first(data)
     return in_8_bits(image, colour)
 
 
-def decode_pages(data: bytes, first_alone: bool = False) -> list[np.ndarray]:
-    """As a file has it: H x W, or with the channels last, BGR and alpha where they are 3 or 4; of a TIFF all pages of one shape.
+def decode_first(data: bytes) -> np.ndarray:
+    """The first page, as a file has it: H x W, or with the channels last, BGR and alpha where they are 3 or 4.
 
     :raises ValueError: as _decode.
     """
+    if not data.startswith(TIFF):
+        return _unchanged(data)
+    if tiff_channels(data) in (1, 3, 4):
+        with contextlib.suppress(ValueError):
+            return _unchanged(data)
+    return read_tiff(data, _unchanged, first_alone=True).pages[0]
+
+
+def decode_all(data: bytes) -> Pages:
+    """All pages.
+
+    :raises ValueError: as _decode.
+    """
+    return read_tiff(data, _unchanged) if data.startswith(TIFF) else Pages([_unchanged(data)])
+
+
+def _unchanged(data: bytes) -> np.ndarray:
+    image = _imdecode(data, import_cv2().IMREAD_UNCHANGED)
+    return upright(image, BACK[exif_orientation(data)]) if data.startswith(TIFF) else image  # cv2 turns TIFF alone, whatever the flags
+
+
+def _imdecode(data: bytes, flags: int) -> np.ndarray:
     cv2 = import_cv2()
-    _check(data)
-    places, samples = pages_of_tiff(data)
-    if samples not in (1, 3, 4):
-        read = _by_tifffile(data, samples)
-    elif len(places) < 2 or first_alone:
-        return [_imdecode(data, cv2.IMREAD_UNCHANGED)]
-    else:  # cv2 reads pages of files alone, and of no name that is not in the system's letters
-        content, read = bytearray(data), []
-        for place in places:
-            begin_at(content, place)
-            read.append(_imdecode(content, cv2.IMREAD_UNCHANGED))
-    return [page for page in read if page.shape == read[0].shape and page.dtype == read[0].dtype]  # not thumbnails
-
-
-def _by_tifffile(data: bytes, samples: int) -> list[np.ndarray]:
-    try:
-        import tifffile  # type: ignore[import-not-found,unused-ignore]
-    except ImportError:
-        raise ValueError(f'a TIFF of {samples} channels, which cv2 cannot read: pip install tifffile, or store each as a page') from None
-    try:
-        with tifffile.TiffFile(io.BytesIO(data)) as tiff:
-            read = [page.asarray() for page in tiff.pages]
-    except Exception as e:  # of many kinds
-        raise ValueError(f'not an image that tifffile reads: {e}') from None
-    if not read:
-        raise ValueError('the image is damaged or cut off')
-    return [page if page.shape[0] != samples else np.moveaxis(page, 0, 2) for page in read]
-
-
-def _check(data: bytes) -> None:
     if not data:
         raise ValueError('the file is empty')
     if is_cut_off(data):
         raise ValueError('the file is cut off: a JPEG without its end')
-
-
-def _imdecode(data: Union[bytes, bytearray], flags: int) -> np.ndarray:
-    cv2 = import_cv2()
     try:
         image = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
     except cv2.error as e:
@@ -180,6 +173,7 @@ def in_8_bits(image: np.ndarray, colour: bool) -> np.ndarray:
     return _with_channels(_scaled(image), colour)
 
 
+@np.errstate(invalid='ignore', over='ignore')  # of NaN and infinity, and of limits beyond the largest number
 def _scaled(image: np.ndarray) -> np.ndarray:
     """Other numbers scaled from their own range, of which a few dead pixels are no part; NaN becomes 0."""
     if image.dtype == np.uint8:
@@ -190,12 +184,11 @@ def _scaled(image: np.ndarray) -> np.ndarray:
     values = colours[np.isfinite(colours)]
     if not values.size:
         raise ValueError('the image holds no finite number')
-    with np.errstate(invalid='ignore', over='ignore'):  # of infinity, and of limits beyond the largest number
-        low, high = map(float, np.percentile(values[::1 + values.size // 1000000], (.01, 99.99)))
-        if high > low:
-            values = values[(values >= 2 * low - high) & (values <= 2 * high - low)]
-        low, high = float(values.min()), float(values.max())
-        return np.nan_to_num(np.rint((image - low) * (255 / ((high - low) or 1))).clip(0, 255)).astype(np.uint8)
+    low, high = map(float, np.percentile(values[::1 + values.size // 1000000], (.01, 99.99)))
+    if high > low:
+        values = values[(values >= 2 * low - high) & (values <= 2 * high - low)]
+    low, high = float(values.min()), float(values.max())
+    return np.nan_to_num(np.rint((image - low) * (255 / ((high - low) or 1))).clip(0, 255)).astype(np.uint8)
 
 
 def _with_channels(image: np.ndarray, colour: bool) -> np.ndarray:
@@ -246,7 +239,7 @@ class Masks:
         if not path:
             return None
         try:
-            mask = decode_pages(read_bytes(path), first_alone=True)[0]
+            mask = decode_first(read_bytes(path))
         except ValueError as e:
             raise ValueError(f'its mask {path}: {e}') from None
         mask = (mask if mask.ndim == 2 else mask[..., :3].any(axis=2)).astype(bool).astype(np.uint8)
@@ -276,26 +269,34 @@ def check_sizes(folder: Path, names: Sequence[str], masks: Masks, camera: Any) -
         raise InvalidOption(f"{why}, and so it is with all others: give the images' own")
 
 
+TIFFS = ('.tif', '.tiff')
+
+
 def check_picture(path: Path) -> None:
     """:raises InvalidOption: for a suffix of no format that cv2 writes."""
-    if not import_cv2().haveImageWriter('x' + os.path.splitext(os.fspath(path))[1]):
-        raise InvalidOption(f'{path}: end its name in .png or .jpg')
+    cv2, suffix = import_cv2(), os.path.splitext(os.fspath(path))[1].lower()
+    if suffix in TIFFS:
+        import_tifffile()
+        return
+    with contextlib.suppress(cv2.error):
+        if cv2.haveImageWriter('x' + suffix) and cv2.imencode(suffix, np.zeros((64, 64, 3), np.uint8))[0]:
+            return
+    raise InvalidOption(f'{path}: end its name in .png or .jpg')
 
 
 def write_picture(path: Path, picture: np.ndarray, *pages: np.ndarray, no_data: str = '', geo: Sequence[Entry] = ()) -> None:
-    """An image as decode_pages gives it, by the suffix of the name.
+    """An image as decode_first gives it, by the suffix of the name.
 
     :param pages: of a TIFF, further ones.
-    :param no_data: of a TIFF, what GDAL_NODATA tells.
-    :param geo: of a TIFF, as geo_entries gives them.
+    :param no_data: of a TIFF, as Pages has it; so is `geo`.
     :raises InvalidOption: as check_picture.
-    :raises ValueError: for what the format cannot hold.
+    :raises ValueError: for what the format cannot hold, and for TIFF without tifffile.
     """
     check_picture(path)
     path = os.fspath(path)
     suffix = os.path.splitext(path)[1].lower()
-    if suffix in ('.tif', '.tiff'):
-        write_whole(path, _tiff([picture, *pages], [*geo, *([(NO_DATA, ASCII, no_data)] if no_data else [])]))
+    if suffix in TIFFS:
+        write_whole(path, tiff_bytes([picture, *pages], no_data, geo))
     elif pages or not holds(suffix, picture):
         raise ValueError(f'{suffix[1:].upper()} cannot hold {1 + len(pages)} x {" x ".join(map(str, picture.shape))} of {picture.dtype}: take TIFF')
     else:
@@ -304,7 +305,10 @@ def write_picture(path: Path, picture: np.ndarray, *pages: np.ndarray, no_data: 
 
 def can_be(text: str, dtype: np.dtype) -> bool:
     """Whether a pixel of this type can have a value: -9999 is none of 8 bits without a sign."""
-    value = float(text)
+    try:
+        value = float(text)
+    except ValueError:
+        return False
     if dtype.kind == 'f':
         return bool(np.isnan(value) or abs(value) <= np.finfo(dtype).max)
     return value.is_integer() and np.iinfo(dtype).min <= value <= np.iinfo(dtype).max
@@ -315,46 +319,3 @@ def holds(suffix: str, picture: np.ndarray) -> bool:
     depths = {'.png': (np.uint8, np.uint16), '.tif': (picture.dtype,)}.get(suffix, (np.uint8,))
     channels = {'.png': (1, 3, 4), '.tif': picture.shape[2:]}.get(suffix, (1, 3))
     return picture.dtype in depths and (picture.ndim == 2 or picture.shape[2] in channels)
-
-
-STRIP = 1 << 18  # bytes that are compressed together
-
-
-def _tiff(pages: Sequence[np.ndarray], more: Sequence[Entry]) -> bytes:
-    """Without loss, of any depth and channels: what cv2 writes loses some of floats, and is of 4 channels at most.
-
-    :param more: entries of each page, by their tags."""
-    content = bytearray(b'II*\0\0\0\0\0')
-    link = 4  # where the place of the next directory stands
-    for page in pages:
-        height, width, samples = (*page.shape, 1)[:3]
-        if samples in (3, 4):
-            page = page[..., [2, 1, 0, 3][:samples]]
-        rows = max(1, STRIP // (page[0].nbytes or 1))
-        strips = [zlib.compress(np.ascontiguousarray(page[at:at + rows], page.dtype.newbyteorder('<')).tobytes(), 1)
-                  for at in range(0, height, rows)]
-        begins = np.cumsum([len(content), *map(len, strips)]).tolist()
-        content += b''.join(strips)
-        kind = {'u': 1, 'i': 2, 'f': 3}[page.dtype.kind]
-        colours = 3 if samples in (3, 4) else 1
-        entries: list[Entry] = [
-            (256, LONG, [width]), (257, LONG, [height]), (258, SHORT, [page.dtype.itemsize * 8] * samples), (259, SHORT, [8]),
-            (262, SHORT, [2 if colours == 3 else 1]), (273, LONG, begins[:-1]), (SAMPLES, SHORT, [samples]), (278, LONG, [rows]),
-            (279, LONG, list(map(len, strips))), (339, SHORT, [kind] * samples)]
-        if samples > colours:
-            entries.insert(-1, (338, SHORT, [2 if samples in (2, 4) else 0] * (samples - colours)))
-        entries += more
-        directory = struct.pack('<H', len(entries))
-        for tag, kind, values in entries:
-            value = packed(kind, values)
-            content += bytes(len(content) % 2)
-            count = len(value) if kind == ASCII else len(values)
-            if len(value) > 4:
-                content += value
-                value = struct.pack('<I', len(content) - len(value))
-            directory += struct.pack('<HHI', tag, kind, count) + value.ljust(4, b'\0')
-        content += bytes(len(content) % 2)
-        struct.pack_into('<I', content, link, len(content))
-        link = len(content) + len(directory)
-        content += directory + bytes(4)
-    return bytes(content)

@@ -2,35 +2,29 @@
 from __future__ import annotations
 
 import contextlib
-import contextvars
 import os
-import re
 import sys
 from typing import Iterator, Optional, TextIO
 
 from opencv_iib._arguments import UnusableName
 
-try:
-    import fcntl
-except ImportError:  # of Windows
-    fcntl = None  # type: ignore[assignment,unused-ignore]
-
-_QUIET = contextvars.ContextVar('quiet', default=False)
+_quiet = False
 
 
 @contextlib.contextmanager
 def quiet(wanted: bool = True) -> Iterator[None]:
-    """Within it, no progress is shown."""
-    token = _QUIET.set(wanted)
+    """Within it, no progress is shown, whichever thread makes it."""
+    global _quiet
+    before, _quiet = _quiet, wanted
     try:
         yield
     finally:
-        _QUIET.reset(token)
+        _quiet = before
 
 
 def is_quiet() -> bool:
     """Whether no progress is to be shown."""
-    return _QUIET.get()
+    return _quiet
 
 
 def put(text: str, stream: Optional[TextIO]) -> None:
@@ -51,40 +45,25 @@ def note(line: str) -> None:
 
 
 STANDARD_OUTPUT = ('-', '/dev/stdout', '/dev/fd/1', '/proc/self/fd/1')
-_OPEN_FILE = re.compile(r'/(?:dev|proc/self)/fd/(\d+)|/dev/stderr')
 
 
 def is_open_file(path: str) -> bool:
     """Whether a name stands for what was open before this program began: '-', /dev/stdout, /dev/fd/63 of the shell's >(...)."""
-    return path in STANDARD_OUTPUT or _OPEN_FILE.fullmatch(path) is not None
-
-
-def _number(path: str) -> int:
-    return 1 if path in STANDARD_OUTPUT else int(_OPEN_FILE.fullmatch(path)[1] or 2)  # type: ignore[index]
+    return path in STANDARD_OUTPUT or path.startswith(('/dev/fd/', '/proc/self/fd/', '/dev/stderr'))
 
 
 def check_open_file(path: str) -> None:
-    """:raises UnusableName: for one that was closed, or is there to be read alone."""
-    number = _number(path)
-    standard = {1: sys.stdout, 2: sys.stderr}  # without one, its number may have gone to another file
-    if not (_is_written_to(number) if number not in standard else standard[number] is not None):
+    """:raises UnusableName: for one that was closed."""
+    standard = {'/dev/stderr': sys.stderr, **dict.fromkeys(STANDARD_OUTPUT, sys.stdout)}  # without one, its number may have gone to another file
+    if path in standard and standard[path] is None or path not in STANDARD_OUTPUT and not os.path.exists(path):
         raise UnusableName(f'{path} cannot be written: it is not open')
 
 
-def _is_written_to(number: int) -> bool:
-    try:
-        if fcntl is None:
-            return bool(os.fstat(number))
-        return fcntl.fcntl(number, fcntl.F_GETFL) & os.O_ACCMODE != os.O_RDONLY
-    except (OSError, OverflowError):
-        return False
-
-
 def write_to_open_file(path: str, content: bytes) -> None:
-    """Goes on where it is. Opened anew by its name, it would begin again what >> adds to."""
+    """Goes on behind what >> adds to."""
     check_open_file(path)
     if path not in STANDARD_OUTPUT:
-        with os.fdopen(os.dup(_number(path)), 'wb') as file:
+        with open(path, 'ab') as file:
             file.write(content)
     else:
         assert sys.stdout is not None

@@ -16,11 +16,13 @@ from numpy.typing import NDArray
 
 from opencv_iib import __version__
 from opencv_iib._arguments import InvalidOption, MissingFile, Path, sequence
-from opencv_iib._exif import TIFF, exif_orientation, geo_entries, geo_entries_of_part, no_data
-from opencv_iib._files import check_folder, check_images, is_in, is_same, new_results, plan, read_bytes
-from opencv_iib._images import FORMATS, Masks, can_be, decode_pages, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
+from opencv_iib._exif import TIFF, exif_orientation
+from opencv_iib._files import check_folder, check_images, is_in, is_same, new_results, read_bytes
+from opencv_iib._images import FORMATS, Masks, can_be, decode_all, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
+from opencv_iib._streams import note
+from opencv_iib._tiff import geo_of_part
 from opencv_iib._upright import Turn, upright
 from opencv_iib.enums import AlignmentModel
 from opencv_iib.features import check_max_size
@@ -47,7 +49,6 @@ alt="{name}, aligned" loading="lazy" width="{width}" height="{height}"></div>
 INTERPOLATIONS = ('NEAREST', 'LINEAR', 'CUBIC', 'LANCZOS4')  #: of cv2, by their names there
 STATE = 'align.json'  #: what a later call goes on from
 VIEWS = 'views'  #: pictures that browsers show, of those that they do not
-TABLES = 'transforms.csv', 'index.html', STATE
 WARPED = tuple(map(np.dtype, ('u1', 'u2', 'i2', 'f4', 'f8')))  #: what cv2.warpPerspective takes
 LARGEST_SIDE = 32766  #: pixels that cv2.warpPerspective takes
 TOLD_ROTATION = 15  #: degrees: upright descriptors match images that are turned by less
@@ -94,7 +95,7 @@ class _Options(NamedTuple):
 
 def align(reference: Path, images: Sequence[Path], out: Path, model: int = AlignmentModel.HOMOGRAPHY, exif: bool = True,
           mask: Optional[Path] = None, max_size: int = 0, format: Optional[str] = None, crop: bool = False, interpolation: str = 'LINEAR',
-          workers: Optional[int] = None) -> list[Aligned]:
+          workers: Optional[int] = None, log: Callable[[str], None] = note) -> list[Aligned]:
     """Aligns images with a reference, and writes them as its camera would see them, in their own depth, channels and pages: NAME.png, .jpg or
     .tif, ``transforms.csv``, ``align.json``, and ``index.html``, in which a slider moves the border between the reference and each.
 
@@ -111,6 +112,7 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     :param crop: write what all that are aligned show, instead of what the reference shows.
     :param interpolation: one of INTERPOLATIONS.
     :param workers: threads; None for one a core.
+    :param log: gets a line about files that cv2 does not read, and about pages that are left out, since they differ from the first one.
     :return: of each image but the reference, in the order of `images`; the table and the page have 2 before 10 and b before C.
     :raises ValueError: for a reference that is no image or too large, no image beside it, or with `crop` none that all show a part of.
     :raises FileExistsError: for a folder with other files, or with an image to be aligned.
@@ -121,19 +123,17 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     crew, masks = Threads(thread_count(workers)), Masks(options.mask)
     check_images(reference)
     check_folder(out, (reference,))
-    paths = [path for path in _expanded(images, out) if not is_same(path, reference)]
+    paths = [path for path in _expanded(images, out, log) if not is_same(path, reference)]
     if not paths:
         raise ValueError(f'no image to align but the reference, {reference}')
     check_folder(out, (*paths, *masks.check([os.path.basename(path) for path in (reference, *paths)])))
-    work = _Work(reference, options, masks)
+    work = _Work(reference, options, masks, log)
     settings = [*options, os.path.abspath(reference), work.stamp(reference), __version__]
     stamps = {path: work.stamp(path) for path in paths}
     stopped: Optional[BaseException] = None
     with new_results(out, 'align', STATE) as folder:
         done, old_part = _known(out, settings, stamps)
         known, names = list(done), _file_names(paths, done)
-        pictures = [stem + suffix for stem in ('reference', *names.values()) for suffix in FORMATS.values()]
-        plan(folder, [*TABLES, *pictures, *(f'{VIEWS}/{file}.jpg' for file in pictures)])
         part, progress = None if crop else work.whole, Progress('aligning', len(paths), len(done))
 
         def do(job: Callable[[str], Aligned], missing: list[str]) -> None:
@@ -168,7 +168,7 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     return ordered
 
 
-def _expanded(images: Sequence[Path], out: str) -> list[str]:
+def _expanded(images: Sequence[Path], out: str, log: Callable[[str], None]) -> list[str]:
     """Files of names, folders and patterns, each once, those of a folder or a pattern in_order. Of these, those in `out` are left out: earlier
     calls have written them.
 
@@ -179,7 +179,7 @@ def _expanded(images: Sequence[Path], out: str) -> list[str]:
     for image in sequence(images, 'images', 'paths'):
         given = os.fspath(image)
         if os.path.isdir(given):
-            found = [os.path.join(given, name) for name in find_images(given)]
+            found = [os.path.join(given, name) for name in find_images(given, log)]
         elif not os.path.lexists(given) and glob.escape(given) != given:
             found = [path for path in glob.glob(given, recursive=True) if not os.path.isdir(path)]
             if not found:
@@ -284,8 +284,7 @@ class _View:
         """:param factor: to reduce by; 0: the least whole one for the largest size, which keeps the centres of pixels.
         :raises ValueError: also for an image that cv2 cannot lay onto another, or others onto it."""
         data = read_bytes(path)
-        self.pages, self.no_data = decode_pages(data), no_data(data)
-        self.geo = geo_entries(data)
+        self.pages, self.left_out, self.no_data, self.geo = decode_all(data)
         if self.no_data and not all(can_be(self.no_data, page.dtype) for page in self.pages):
             self.no_data = ''
         self.suffix = '.jpg' if data.startswith(b'\xff\xd8') else '.tif' if data.startswith(TIFF) else '.png'
@@ -295,8 +294,9 @@ class _View:
             raise ValueError(f'{self.size[0]} x {self.size[1]} pixels, and cv2 lays sides of up to {LARGEST_SIDE} onto others: reduce it')
         mask, holes = masks.of(os.path.basename(path), first), self.holes(first)
         if holes is not None:
-            mask = (~holes if mask is None else mask * ~holes).astype(np.uint8)
-            first = np.where(holes if first.ndim == 2 else holes[..., None], np.nan, first)
+            whole = np.asarray(~(holes if first.ndim == 2 else holes.any(axis=2)), np.uint8)
+            mask = whole if mask is None else mask * whole
+            first = np.where(holes, np.nan, first)
         orientation = exif_orientation(data) if options.exif else 1
         turn, turned = Turn(orientation, *self.size), upright(in_8_bits(first, False), orientation)
         self.turn, self.factor = turn, factor or -(-max(self.size) // (options.max_size or max(self.size)))
@@ -313,22 +313,23 @@ class _View:
         return np.asarray(import_cv2().resize(whole, (width, height), interpolation=import_cv2().INTER_AREA))
 
     def holes(self, page: NDArray[Any]) -> Optional[NDArray[np.bool_]]:
-        """Where it holds no data; None if it does everywhere."""
+        """Where it holds no data: H x W, or H x W x 1 or channels; None if it does everywhere."""
         value = float(self.no_data or 'nan')
         if not self.no_data and page.dtype.kind != 'f':
             return None
         none = np.isnan(page) if np.isnan(value) else page == value
-        none = none if page.ndim == 2 else none.any(axis=2)
+        if page.ndim == 3 and value >= 0:  # which a channel of a colour may have, too
+            none = none.all(axis=2, keepdims=True)
         return none if none.any() else None
 
 
 class _Work:
     """What is done with each image. Threads share it."""
 
-    def __init__(self, reference: str, options: _Options, masks: Masks) -> None:
-        self._options, self._masks = options, masks
+    def __init__(self, reference: str, options: _Options, masks: Masks, log: Callable[[str], None]) -> None:
+        self._options, self._masks, self._log = options, masks, log
         try:
-            self._reference = _View(reference, options, masks)
+            self._reference = self._view(reference)
         except (ValueError, OSError) as e:
             raise ValueError(f'{reference}: {e}') from None
         if options.format not in (None, 'TIFF') and not (len(self._reference.pages) == 1 and holds(FORMATS[options.format], self._reference.pages[0])):
@@ -340,10 +341,16 @@ class _Work:
         """Of an image's file and that of its mask."""
         return self._masks.stamp(path, os.path.basename(path))
 
+    def _view(self, path: str, factor: int = 0) -> _View:
+        view = _View(path, self._options, self._masks, factor)
+        if view.left_out:
+            self._log(f'{path}: {view.left_out} of its pages are left out, since they have another size or type than the first one')
+        return view
+
     def align(self, path: str, name: str, part: Optional[list[int]]) -> Aligned:
         """:param name: path of what is written, without suffix; nothing is without `part`, what of the reference is shown: x, y, width, height."""
         try:
-            view = _View(path, self._options, self._masks, self._reference.factor if self._options.model == AlignmentModel.TRANSLATION else 0)
+            view = self._view(path, self._reference.factor if self._options.model == AlignmentModel.TRANSLATION else 0)
         except (ValueError, OSError) as e:
             return Aligned(path, getattr(e, 'strerror', None) or str(e))
         found = self._aligner.align(view.grey, view.mask)
@@ -376,11 +383,14 @@ class _Work:
     def _write(self, view: _View, pages: Sequence[NDArray[Any]], name: str, part: list[int]) -> str:
         whole = len(pages) == 1 and holds(view.suffix, pages[0])
         suffix = FORMATS[self._options.format] if self._options.format else view.suffix if whole else '.tif'
-        write_picture(name + suffix, *pages, no_data=view.no_data, geo=geo_entries_of_part(self._reference.geo, part[0], part[1]))
+        write_picture(name + suffix, *pages, no_data=view.no_data, geo=geo_of_part(self._reference.geo, part[0], part[1]))
         folder, file = os.path.split(name + suffix)
         if suffix == '.tif' or pages[0].dtype != np.uint8:  # which browsers do not show, or too dark
             os.makedirs(os.path.join(folder, VIEWS), exist_ok=True)
-            write_picture(os.path.join(folder, VIEWS, file + '.jpg'), in_8_bits(np.nan_to_num(pages[0]), True))
+            holes = None if pages[0].dtype == np.uint8 else view.holes(pages[0])
+            shown = pages[0] if holes is None else np.where(holes, np.nan, pages[0])  # which has no part in the scale
+            shown = shown if np.isfinite(shown).any() else np.zeros_like(shown, np.uint8)
+            write_picture(os.path.join(folder, VIEWS, file + '.jpg'), in_8_bits(shown, True))
         return file
 
     def _warped(self, view: _View, page: NDArray[Any], onto: NDArray[Any], size: Sequence[int]) -> NDArray[Any]:
@@ -392,15 +402,15 @@ class _Work:
             return warped if warped.ndim == values.ndim else warped[..., None]
         holes, values = view.holes(page), page
         if holes is not None:
-            values = np.where(holes if page.ndim == 2 else holes[..., None], page.dtype.type(0), page)
+            values = np.where(holes, page.dtype.type(0), page)
         if page.dtype not in WARPED:
             values = values.astype(float)
         warped = warp(values)
         if page.dtype not in WARPED:
             warped = np.rint(warped).clip(np.iinfo(page.dtype).min, np.iinfo(page.dtype).max).astype(page.dtype)
         if holes is not None or view.no_data:
-            shown = warp(np.ones(page.shape[:2], np.float32) if holes is None else (~holes).astype(np.float32))
-            warped[np.abs(shown - 1) > 1e-3] = float(view.no_data or 'nan')
+            shown = warp(np.ones(page.shape[:2] + (1,) * (page.ndim - 2), np.float32) if holes is None else (~holes).astype(np.float32))
+            np.copyto(warped, page.dtype.type(float(view.no_data or 'nan')), where=np.abs(shown - 1) > 1e-3)
         return warped
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from opencv_iib._arrays import as_array, as_image
+from opencv_iib._arrays import as_image, as_mask
 from opencv_iib._upright import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import detect_rows
@@ -40,7 +40,7 @@ def detect_and_describe(image: ArrayLike, n: int = 1000, mask: Optional[ArrayLik
     iib = IIBDescriptorExtractor.createRecommended(n)
     stored = as_image(image)
     turned = upright(stored, orientation)
-    rows = detect_rows(iib, turned, mask if mask is None else upright(as_array(mask, 'the mask'), orientation))
+    rows = detect_rows(iib, turned, mask if mask is None else upright(as_mask(mask), orientation))
     points = Turn(orientation, *stored.shape[1::-1]).points(rows[:, :2])
     return Features(points, rows[:, 2], iib.compute(turned, rows)[1])
 

@@ -8,141 +8,184 @@ import io
 import json
 import os
 import threading
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Collection, Iterator, Optional, Union
 
 import numpy as np
 
-from opencv_iib import __version__, error
+from opencv_iib import __version__
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._files import check_folder, check_is_folder, check_outputs, only_writer, output_file, write_whole
+from opencv_iib._camera import AnyCamera, Camera, as_camera
+from opencv_iib._files import OF_FILE_MANAGERS, check_folder, check_is_folder, check_outputs, only_writer, output_file, remove_parts, replaced, write_whole
+from opencv_iib._hdf5 import import_h5py, new_hdf5
 from opencv_iib._images import Masks, check_sizes, find_images
+from opencv_iib._pairs import check_list, pair_name, tiles
 from opencv_iib._parallel import Threads, in_parallel, thread_count
+from opencv_iib._partial import open_partial, remove_logs
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
-from opencv_iib.colmap.hloc import pair_name
-from opencv_iib.colmap.pairs import from_file, tiles
 from opencv_iib.features import FeatureOptions, Features
-from opencv_iib.localization.localizer import AnyCamera, Camera, as_camera
 from opencv_iib.measure import Measured, View, measure
 
 HDF5 = ('.h5', '.hdf5')
-TABLE = 'pairs.csv'
-NUMBERS = [*(f'r{row}{column}' for row in '123' for column in '123'), 't1', 't2', 't3']
-COLUMNS = ['image_a', 'image_b', 'found', 'reason', 'matches', 'agree', 'rotation', *NUMBERS, 'files', 'settings']
+TABLE, PARTIAL = 'pairs.csv', '.partial'
+COLUMNS = ['image_a', 'image_b', 'found', 'reason', 'matches', 'agree', 'rotation', *(f'r{row}{column}' for row in '123' for column in '123'),
+           't1', 't2', 't3', 'files', 'settings']
+FOUND, MARK = 2, slice(-2, None)  # of a row; a pair of the same mark is not matched again
 IMAGES_HELD = 32  # whose pixels are kept, of those that were described
+Row = list[str]  # of COLUMNS
 
 
-class _Folder(contextlib.AbstractContextManager[Any]):
-    """A CSV file a pair, ``A/B.csv``, and a table of all, to which each pair adds a line when it is done."""
+def _row(a: str, b: str, measured: Measured, mark: Row) -> Row:
+    pose = measured.pose
+    numbers = [f'{value:.10g}' for value in (*pose.R.ravel(), *pose.t.ravel())] if pose is not None and pose.found else [''] * 12
+    return [a, b, f'{measured.found:d}', pose.reason if pose is not None else '', f'{len(measured.bits)}', f'{measured.agree.sum()}',
+            f'{measured.rotation:.10g}', *numbers, *mark]
+
+
+class _State(contextlib.AbstractContextManager['_State']):
+    """What was measured and is not yet in its place, by the pairs' names."""
 
     def __init__(self, path: str) -> None:
-        self._path = path = os.path.realpath(path)
-        table = os.path.join(path, TABLE)
-        os.makedirs(path, exist_ok=True)
-        self._lock = contextlib.ExitStack()
-        self._lock.enter_context(only_writer(path, is_folder=True))
-        self._done: dict[tuple[str, str], list[str]] = {}
-        if os.path.exists(table):
-            with open(table, encoding='utf-8', newline='') as file:
+        self._path, self._db, self.exported = path, open_partial(path, 'iib_pairs'), False
+        self._db.execute('CREATE TABLE IF NOT EXISTS iib_pairs (name TEXT PRIMARY KEY, row TEXT, content BLOB)')
+
+    def rows(self) -> dict[str, Row]:
+        return {name: json.loads(row) for name, row in self._db.execute('SELECT name, row FROM iib_pairs ORDER BY rowid')}
+
+    def contents(self) -> Iterator[tuple[str, bytes]]:
+        yield from self._db.execute('SELECT name, content FROM iib_pairs ORDER BY rowid')
+
+    def put(self, name: str, row: Row, content: bytes) -> None:
+        self._db.execute('REPLACE INTO iib_pairs VALUES (?, ?, ?)', (name, json.dumps(row), content))
+
+    def forget(self, name: str) -> None:
+        self._db.execute('DELETE FROM iib_pairs WHERE name=?', (name,))
+
+    def __exit__(self, *exc: Any) -> None:
+        """Removes the file if there is nothing to go on from."""
+        useless = self.exported or not self.rows()
+        self._db.close()
+        if useless:
+            remove_logs(self._path)
+            os.unlink(self._path)
+
+
+class _Folder:
+    """A CSV file a pair, ``A/B.csv``, and a table of all."""
+
+    def __init__(self, table: str) -> None:
+        self._path, self._table, self.rows = os.path.dirname(table), table, dict[str, Row]()
+        if os.path.lexists(table):
+            head: Row = []
+            with contextlib.suppress(csv.Error, ValueError), open(table, encoding='utf-8', newline='') as file:
                 head, *rows = csv.reader(file)
             if head != COLUMNS:
                 raise FileExistsError(f'{table} is there, and not of this command: choose another folder')
-            self._done = {(row[0], row[1]): row for row in rows if len(row) == len(COLUMNS)}  # the last one may be cut off
-        elif os.listdir(path):
-            raise FileExistsError(f'{path} holds other files: choose another folder')
+            self.rows = {pair_name(*row[:2]): row for row in rows if len(row) == len(COLUMNS)}
+        elif {*os.listdir(self._path)} - OF_FILE_MANAGERS != {TABLE + PARTIAL} and not os.path.getsize(table + PARTIAL):
+            raise FileExistsError(f'{self._path} holds other files: choose another folder')
+
+    def check(self, name: str, own: bool) -> bool:
+        """Whether the pair's file is there.
+
+        :raises FileExistsError: for a file of no pair.
+        :raises OSError: for a name that is too long."""
+        for part in (name + '.csv').split('/'):
+            with contextlib.suppress(FileNotFoundError):
+                os.lstat(os.path.join(self._path, part))
+        is_there = os.path.lexists(self.file(name))
+        if is_there and not own:
+            raise FileExistsError(f'{self.file(name)} is there, and of no pair of {TABLE}: move it away, or choose another folder')
+        return is_there
+
+    def content(self, measured: Measured) -> bytes:
+        return measured.content()
+
+    def export(self, state: _State, gone: Collection[str]) -> None:
+        for name in gone:
+            with contextlib.suppress(OSError):  # the file of another pair may be beside it
+                os.unlink(self.file(name))
+                os.rmdir(os.path.dirname(self.file(name)))
+        for name, content in state.contents():
+            os.makedirs(os.path.dirname(self.file(name)), exist_ok=True)
+            write_whole(self.file(name), content)
         text = io.StringIO(newline='')
-        csv.writer(text).writerows([COLUMNS, *self._done.values()])
-        write_whole(table, text.getvalue().encode())
-        self._file = open(table, 'a', encoding='utf-8', newline='')
+        csv.writer(text).writerows([COLUMNS, *(row for name, row in {**self.rows, **state.rows()}.items() if name not in gone)])
+        write_whole(self._table, text.getvalue().encode())
 
-    def found(self, a: str, b: str, mark: list[str]) -> Optional[bool]:
-        """Whether a pair that was matched of the same files with the same settings has been found; None for another.
-
-        :raises FileExistsError: where a file that is of no pair would be replaced.
-        """
-        if (a, b) not in self._done and os.path.lexists(self._name(a, b)):
-            raise FileExistsError(f'{self._name(a, b)} is there, and of no pair of {TABLE}: move it away, or choose another folder')
-        row = self._done.get((a, b), [])
-        return row[2] == '1' if row[-2:] == mark and os.path.exists(self._name(a, b)) else None
-
-    def put(self, a: str, b: str, mark: list[str], measured: Measured) -> None:
-        os.makedirs(os.path.dirname(self._name(a, b)), exist_ok=True)
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(self._name(a, b))
-        pose = measured.pose
-        numbers = [f'{value:.10g}' for value in (*pose.R.ravel(), *pose.t.ravel())] if pose is not None and pose.found else [''] * len(NUMBERS)
-        csv.writer(self._file).writerow([a, b, int(measured.found), pose.reason if pose is not None else '', len(measured.bits),
-                                         int(measured.agree.sum()), f'{measured.rotation:.10g}', *numbers, *mark])
-        self._file.flush()
-        measured.save(self._name(a, b))  # last: without it the pair is matched again
-
-    def _name(self, a: str, b: str) -> str:
-        return os.path.join(self._path, pair_name(a, b) + '.csv')
-
-    def __exit__(self, *exc: Any) -> None:
-        self._file.close()
-        self._lock.close()
+    def file(self, name: str) -> str:
+        return os.path.join(self._path, name + '.csv')
 
 
-class _Hdf5(contextlib.AbstractContextManager[Any]):
+class _Hdf5:
     """A group a pair as in hloc's dense matches: keypoints0, keypoints1, scores; and covariances, agrees, and with cameras R and t."""
 
     def __init__(self, path: str) -> None:
-        try:
-            import h5py  # type: ignore[import-untyped,unused-ignore]
-        except ImportError as e:
-            raise ImportError(f'{e}: {path} needs pip install h5py; a folder does not') from None
-        new = not os.path.exists(path) or not os.path.getsize(path)
-        try:
-            self._file = h5py.File(path, 'w' if new else 'a')
-        except BlockingIOError:
-            raise BlockingIOError(f'{path} is being read or written by another process') from None
-        except OSError as e:
-            raise OSError(f'{path} is no HDF5 file that can be written: {e}') from None
-        if new:
-            self._file.attrs['opencv_iib'] = 'match'
-        elif 'opencv_iib' not in self._file.attrs:
-            self._file.close()
-            raise FileExistsError(f'{path} is there, and not of this command: choose another name')
+        self._path, self.rows = path, dict[str, Row]()
+        self._old: Any = {}
+        h5py = import_h5py()
+        if os.path.exists(path) and os.path.getsize(path):
+            try:
+                self._old = h5py.File(path, 'r')
+            except BlockingIOError:
+                raise BlockingIOError(f'{path} is being written by another process') from None
+            except OSError as e:
+                raise OSError(f'{path} is no HDF5 file that can be read: {e}') from None
+            if 'opencv_iib' not in self._old.attrs:
+                raise FileExistsError(f'{path} is there, and not of this command: choose another name')
+            for name in self._names():
+                known = self._old[name].attrs
+                if 'mark' in known:
+                    self.rows[name] = ['', '', f'{known["found"]:d}', *known['mark']]
 
-    def found(self, a: str, b: str, mark: list[str]) -> Optional[bool]:
-        """As of _Folder."""
-        group = self._file.get(pair_name(a, b))
-        return bool(group.attrs['found']) if group is not None and list(group.attrs.get('mark', [])) == mark else None
+    def _names(self) -> list[str]:
+        """Of pairs, and of what the user may have added."""
+        return [name for first, group in self._old.items() for name in ([f'{first}/{each}' for each in group] if hasattr(group, 'keys') else [first])]
 
-    def put(self, a: str, b: str, mark: list[str], measured: Measured) -> None:
-        if pair_name(a, b) in self._file:
-            del self._file[pair_name(a, b)]
-        group, pose = self._file.create_group(pair_name(a, b)), measured.pose
-        for name, values in (('keypoints0', measured.matches.points1), ('keypoints1', measured.matches.points2),
-                             ('scores', measured.matches.similarities.ravel().clip(0)), ('covariances', measured.matches.covariances),
-                             ('agrees', measured.agree)):
-            group[name] = values
-        if pose is not None and pose.found:
-            group['R'], group['t'], group['covariance'] = pose.R, pose.t.ravel(), pose.covariance
-        group.attrs['found'], group.attrs['reason'] = measured.found, pose.reason if pose is not None else ''
-        group.attrs['rotation'] = measured.rotation
-        group.attrs['mark'] = mark  # last: without it the pair is matched again
-        self._file.flush()
+    def file(self, name: str) -> str:
+        return self._path
 
-    def __exit__(self, *exc: Any) -> None:
-        self._file.close()
+    def check(self, name: str, own: bool) -> bool:
+        """As of _Folder, by any name."""
+        return own
+
+    def content(self, measured: Measured) -> bytes:
+        arrays, pose = io.BytesIO(), measured.pose
+        posed: dict[str, Any] = {'R': pose.R, 't': pose.t.ravel(), 'covariance': pose.covariance} if pose is not None and pose.found else {}
+        np.savez(arrays, keypoints0=measured.matches.points1, keypoints1=measured.matches.points2,
+                 scores=measured.matches.similarities.ravel().clip(0), covariances=measured.matches.covariances, agrees=measured.agree, **posed)
+        return arrays.getvalue()
+
+    def export(self, state: _State, gone: Collection[str]) -> None:
+        rows = state.rows()
+        with replaced(self._path) as (part,), new_hdf5(part) as file:
+            file.attrs['opencv_iib'] = 'match'
+            for name in self._names():
+                if name not in rows and name not in gone:
+                    self._old.copy(name, file.require_group(os.path.dirname(name) or '/'))
+            for name, content in state.contents():
+                group, row = file.create_group(name), dict(zip(COLUMNS, rows[name]))
+                with np.load(io.BytesIO(content)) as arrays:
+                    for array, values in arrays.items():
+                        group[array] = values
+                group.attrs.update(found=row['found'] == '1', reason=row['reason'], rotation=float(row['rotation']), mark=rows[name][MARK])
 
 
 def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera] = None, options: FeatureOptions = FeatureOptions(),
                workers: Optional[int] = None, log: Callable[[str], None] = note) -> tuple[int, int]:
-    """Matches pairs of a list as match_images does, and describes each image once. Each pair is written when it is done: a later call goes on
-    from there, and does what is new or was changed, or was matched with other options.
+    """Matches pairs of a list as match_images does, and describes each image once. Until all are done, each pair is kept in a file of SQLite,
+    ``pairs.csv.partial`` in the folder or ``X.h5.partial``: a later call goes on from there, and does what is new or was changed, or was matched
+    with other options. Pairs of images that cannot be read any more are removed.
 
     :param pairs: text file of two names a line, as COLMAP and hloc write it.
     :param images: folder that the names are relative to.
-    :param out: folder for a CSV file a pair, ``A/B.csv`` (a / in names is a -), and ``pairs.csv``, with verdicts and poses; or a name in .h5,
-        of a group a pair as in hloc's dense matches.
+    :param out: folder for a CSV file a pair, ``A/B.csv`` (a / in names is a -), and ``pairs.csv``, with verdicts and poses; or a name in .h5
+        or .hdf5, of a group a pair as in hloc's dense matches.
     :param camera: of all images, as match_images takes it.
     :param workers: threads; None for one a core.
-    :param log: told of each image that cannot be read, whose pairs are left out.
-    :return: how many pairs show the same, and of how many.
-    :raises ValueError: for a list that is none of the folder's images.
+    :param log: gets a line of each image that cannot be read and of each line of the list that is not of two images, which are left out.
+    :return: how many pairs show the same, and of how many, with those that are left out.
+    :raises ValueError: for a list without a pair of the folder's images.
     :raises FileExistsError: for a file or a folder that is of something else.
     :raises BlockingIOError: if another process is writing it.
     """
@@ -150,42 +193,68 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
     crew, masks, features, folder, out = Threads(thread_count(workers)), Masks(options.mask), Features(options), os.fspath(images), os.fspath(out)
     lens = None if camera is None else as_camera(camera)
     check_is_folder(folder)
-    names = find_images(folder)
-    listed = {frozenset(pair): pair for pair in from_file(pairs, {name: number for number, name in enumerate(names)})}
+    is_hdf5 = out.lower().endswith(HDF5)
+    names = find_images(folder, log)
+    chosen, left_out = check_list(pairs, {name: number for number, name in enumerate(names)}, log)
+    listed = {frozenset(pair): pair for pair in chosen}
     used = {names[number] for pair in listed.values() for number in pair}
     masked = masks.check(sorted(used))
-    if out.lower().endswith(HDF5):
+    if is_hdf5:
         check_outputs([out], (pairs, *masked, *(os.path.join(folder, name) for name in used)))
     else:
-        check_folder(out)
+        check_folder(out, others=f', and a file in {" or ".join(HDF5)}')
     check_sizes(folder, sorted(used), masks, lens)
-    if len({pair_name(names[a], names[b]) for a, b in listed.values()}) < len(listed):
+    labels = {pair: pair_name(names[pair[0]], names[pair[1]]) for pair in listed.values()}
+    if len(set(labels.values())) < len(labels):
         raise InvalidOption(f'{os.fspath(pairs)}: two pairs would have one name, with - in place of /')
-    settings = json.dumps([*map(str, vars(options).values()), str(lens), __version__])
+    settings = json.dumps([*(str(value) for name, value in vars(options).items() if name != 'mask'), str(lens), __version__])
     stamps = {name: masks.stamp(os.path.join(folder, name), name) for name in used}
-    views, found, failed = _Views(folder, masks, features, lens), 0, set[str]()
-    with _Hdf5(output_file(out)) if out.lower().endswith(HDF5) else _Folder(out) as target:
-        missing = []
-        for a, b in listed.values():
-            known = target.found(names[a], names[b], [f'{stamps[names[a]]} {stamps[names[b]]}', settings])
-            found += known or 0
-            if known is None:
-                missing.append((a, b))
+    marks = {pair: [f'{stamps[names[pair[0]]]} {stamps[names[pair[1]]]}', settings] for pair in labels}
+    views, found, logged, gone, missing = _Views(folder, masks, features, lens), 0, set[str](), list[str](), []
+
+    def fail(label: str, why: str) -> None:
+        if why not in logged:
+            log(why)
+        logged.add(why)
+        gone.append(label)
+
+    file = output_file(out) if is_hdf5 else os.path.join(os.path.realpath(out), TABLE)
+    os.makedirs(os.path.dirname(file), exist_ok=True)
+    with contextlib.ExitStack() as stack:
+        stack.enter_context(only_writer(file + PARTIAL))
+        target: Union[_Hdf5, _Folder] = _Hdf5(file) if is_hdf5 else _Folder(file)
+        state = stack.enter_context(_State(file + PARTIAL))
+        measured = state.rows()
+        known = {**target.rows, **measured}
+        remove_parts({file, *map(target.file, measured)})
+        for pair, label in labels.items():
+            row = known.get(label, [])
+            try:
+                if (target.check(label, bool(row)) or label in measured) and row[MARK] == marks[pair]:
+                    found += row[FOUND] == '1'
+                else:
+                    missing.append(pair)
+            except FileExistsError:
+                raise
+            except OSError as e:
+                fail(label, f'{label}.csv cannot be written: {e.strerror}')
         progress = Progress('matching', len(listed), len(listed) - len(missing))
         ordered = [pair for tile in tiles(missing, IMAGES_HELD // 4) for pair in tile]  # so that images are held as long as they are needed
-        for (a, b), result in in_parallel(lambda pair: measure(views.of(names[pair[0]]), views.of(names[pair[1]]), features), ordered, crew):
-            if isinstance(result, Exception) and not isinstance(result, (ValueError, OSError, error)):
+        for pair, result in in_parallel(lambda pair: measure(views.of(names[pair[0]]), views.of(names[pair[1]]), features), ordered, crew):
+            if isinstance(result, ImportError):
                 raise result
             if isinstance(result, Exception):
-                if str(result) not in failed:
-                    log(str(result))
-                failed.add(str(result))
+                state.forget(labels[pair])
+                fail(labels[pair], str(result) or type(result).__name__)
             else:
-                target.put(names[a], names[b], [f'{stamps[names[a]]} {stamps[names[b]]}', settings], result)
+                state.put(labels[pair], _row(names[pair[0]], names[pair[1]], result, marks[pair]), target.content(result))
                 found += result.found
             progress.step()
         progress.close()
-    return found, len(listed)
+        if state.rows() or not target.rows.keys().isdisjoint(gone) or not os.path.exists(file):
+            target.export(state, gone)
+            state.exported = True
+    return found, len(listed) + left_out
 
 
 class _Views:

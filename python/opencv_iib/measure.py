@@ -11,21 +11,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib._arguments import InvalidOption, Path, sequence
+from opencv_iib._camera import AnyCamera, Camera, as_camera
 from opencv_iib._files import check_images, check_outputs, write_whole
 from opencv_iib._images import Masks, check_picture, import_cv2, read_with_orientation, write_picture
+from opencv_iib._streams import is_open_file
+from opencv_iib._two_views import show_the_same
 from opencv_iib._upright import Turn, upright
-from opencv_iib.colmap.verify import show_the_same
 from opencv_iib.demo import GOOD, INK, OTHER, draw
 from opencv_iib.enums import Orientation
 from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.functions import match
 from opencv_iib.geometry import FoundPose, NoPose, findRelativePose
-from opencv_iib.localization.localizer import AnyCamera, Camera, as_camera
 from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.refinement import PropagatedMatches, RefinedMatches, prepared, propagateMatches
 from opencv_iib.rotation import matchRotated
 
 COMPARED = .25  # pixels: one scale of poses whose matches are counted, since under scales of their own the looser one has more
+SUFFIXES = '.csv', '.json', '.npz'
 COLUMNS = ('x1', 'y1', 'x2', 'y2', 'xx', 'xy', 'yy', 'similarity', 'bits')
 
 
@@ -54,31 +56,38 @@ class Measured(NamedTuple):
         return np.sqrt(self.matches.covariances[:, ::2].mean(axis=1))
 
     def save(self, file: Path) -> None:
-        """Writes matches and pose to a file that is replaced when the new one is whole, by its suffix: .json, .npz, or else CSV.
+        """Writes matches and pose to a file that is replaced when the new one is whole, by its suffix: .csv, .json or .npz; CSV to standard
+        output ('-') and to devices.
 
         A row a match: both points in pixels (the centre of the first pixel is 0), the covariance of the second, the patches'
-        correlation (-1: not refined), bits that differ, and with cameras whether it agrees with the pose. JSON and NPZ have the rotation and
-        the pose too; in JSON it is null without cameras, as is a number that is not finite, and ``matches`` are objects. '-' is standard output.
+        correlation (-1: not refined), bits that differ, with cameras whether it agrees with the pose, and `found`. JSON and NPZ have `found`,
+        the rotation and the pose too; in JSON it is null without cameras, as is a number that is not finite, and ``matches`` are objects.
+
+        :raises InvalidOption: for another suffix.
         """
-        path, pose = os.fspath(file), None
+        check_suffix(file)
+        write_whole(os.fspath(file), self.content(os.path.splitext(os.fspath(file))[1].lower()))
+
+    def content(self, suffix: str = '') -> bytes:
+        """What `save` writes to a file of this suffix."""
+        pose: Optional[dict[str, Any]] = None
         table = np.column_stack([self.matches.points1, self.matches.points2, self.matches.covariances, self.matches.similarities, self.bits])
         rows = [[f'{value:.10g}' for value in row] for row in table.astype(float).tolist()]
         if self.pose is not None:
             pose = {name: None if value is None else np.squeeze(value) for name, value in self.pose._asdict().items()}
             pose.update(found=self.pose.found, reason=self.pose.reason, inliers=self.agree)
-        if path.lower().endswith('.npz'):
+        if suffix == '.npz':
             arrays = io.BytesIO()
-            known = {name: value for name, value in (pose or {}).items() if value is not None}
+            known = {name: value for name, value in {'found': self.found, **(pose or {})}.items() if value is not None}
             np.savez_compressed(arrays, **self.matches._asdict(), bits=self.bits, rotation=self.rotation, **known)
-            content = arrays.getvalue()
-        elif path.lower().endswith('.json'):
+            return arrays.getvalue()
+        if suffix == '.json':
             matches = [dict(zip(COLUMNS, (json.loads(text) if np.isfinite(float(text)) else None for text in row))) for row in rows]
-            content = json.dumps({'matches': matches, 'pose': pose, 'rotation': float(self.rotation)}, default=_finite, allow_nan=False).encode()
-        else:
-            header = [*COLUMNS, 'agrees'] if pose else COLUMNS
-            rows = [[*row, f'{agrees:d}'] for row, agrees in zip(rows, self.agree.tolist())] if pose else rows
-            content = ''.join(','.join(row) + '\n' for row in (header, *rows)).encode()
-        write_whole(path, content)
+            return json.dumps({'found': bool(self.found), 'matches': matches, 'pose': pose, 'rotation': float(self.rotation)}, default=_finite,
+                              allow_nan=False).encode()
+        header = [*COLUMNS, *['agrees'] * (pose is not None), 'found']
+        marks = [[f'{agrees:d}'] * (pose is not None) + [f'{self.found:d}'] for agrees in self.agree.tolist()]
+        return ''.join(','.join(row) + '\n' for row in (header, *map(list.__add__, rows, marks))).encode()
 
     def __str__(self) -> str:
         count = int(self.refined.sum())
@@ -96,6 +105,13 @@ class Measured(NamedTuple):
         return (f'{text}\npose: {int(self.pose.inliers.sum())} agree; the second camera stands towards {towards.round(3)} of the '
                 f'first (right, down, ahead; +-{np.linalg.norm(errors[3:]):.2g} degrees), and is turned by '
                 f'{np.degrees(-turn).round(2)} degrees (+-{np.linalg.norm(errors[:3]):.2g})')
+
+
+def check_suffix(path: Path) -> None:
+    """:raises InvalidOption: for a file of a suffix that Measured.save does not know."""
+    name = os.fspath(path)
+    if not (is_open_file(name) or name.lower().endswith(SUFFIXES) or os.path.exists(name) and not os.path.isfile(name)):
+        raise InvalidOption(f'{name}: end its name in {", ".join(SUFFIXES[:-1])} or {SUFFIXES[-1]}')
 
 
 def _finite(array: NDArray[Any]) -> Any:
@@ -120,7 +136,7 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
     :param picture: picture to write.
     :param cameras: one for both images, or one each: ``'MODEL,WIDTH,HEIGHT,PARAMS'`` with COLMAP's names and parameters, or as
         :meth:`opencv_iib.localization.Localizer.localize` takes it.
-    :raises ValueError: for a file that is no image, or a camera of another size.
+    :raises ValueError: for a file that is no image, a camera of another size, or a suffix of `out` that is none of these.
     :raises FileExistsError: for an image as a file to write.
     :raises FileNotFoundError: for an image that is not there.
     """
@@ -132,6 +148,8 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
     check_images(*paths)
     masked = masks.check([os.path.basename(path) for path in paths])
     check_outputs([path for path in (out, picture) if path is not None], (*paths, *masked))
+    if out is not None:
+        check_suffix(out)
     if picture is not None:
         check_picture(picture)
     lenses = [as_camera(camera) for camera in (cameras[0], cameras[-1])] if len(cameras) else [None, None]
@@ -162,7 +180,7 @@ class View(NamedTuple):
         """:param name: by which it has its mask.
         :param described: its rows and codes, if they are known.
         :raises ValueError: for a file that is no image, or of another size than its camera's or its mask."""
-        stored, orientation = read_with_orientation(path, features.options.exif)
+        stored, orientation = read_with_orientation(path, features.options.exif, of_camera=lens is not None)
         height, width = stored.shape[:2]
         if lens is not None and (lens.width, lens.height) != (width, height):
             raise InvalidOption(f'{path} has {width} x {height} pixels, its camera {lens.width} x {lens.height}: give the '

@@ -84,7 +84,7 @@ bool read(const Array& array, std::vector<cv::DMatch>& matches)
     if (!read(array, pairs) || (!pairs.empty() && (pairs.type() != CV_32S || pairs.cols != 2)))
         return false;
     matches.clear();
-    for (int i = 0; i < pairs.rows; i++)
+    for (int i = 0; i < (pairs.empty() ? 0 : pairs.rows); i++)  // N x 0 is what knnMatch has without matches
         matches.emplace_back(pairs.at<int>(i, 0), pairs.at<int>(i, 1), 0.f);
     return true;
 }

@@ -46,7 +46,7 @@ template <typename Point> bool read(const Array& array, std::vector<Point>& poin
     if (!read(array, rows) ||
             (!rows.empty() && (rows.type() != CV_64F || rows.cols != cv::DataType<Point>::channels)))
         return false;
-    points.assign(rows.ptr<Point>(), rows.ptr<Point>() + rows.rows);
+    points.assign(rows.ptr<Point>(), rows.ptr<Point>() + (rows.empty() ? 0 : rows.rows));
     return true;
 }
 

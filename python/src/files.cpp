@@ -25,8 +25,6 @@ static void makeFolder(OutputFolder* self, nb::handle path, const std::vector<nb
 
 void bindFiles(nb::module_& m)
 {
-    m.def("isPartOf",
-            [](nb::handle file, nb::handle name) { return cv::iib::isPartOf(pathOf(file), pathOf(name)); });
     nb::class_<WholeFile>(m, "WholeFile")
             .def("__init__", [](WholeFile* self, nb::handle path) { new (self) WholeFile(pathOf(path)); })
             .def_prop_ro("part",

@@ -13,10 +13,10 @@ import numpy as np
 from collection import Collection
 from opencv_iib import _core, _parallel
 from opencv_iib._files import only_writer
+from opencv_iib._two_views import magsac
 from opencv_iib.colmap import SettingsChanged, build_database, pipeline
 from opencv_iib.colmap.database import MAX_IMAGE_ID, Database, pair_id
-from opencv_iib.colmap.verify import magsac
-from support import cv2, optional, run_command
+from support import cv2, optional, run_command, texture
 
 distributed, pycolmap = optional('distributed'), optional('pycolmap')
 
@@ -57,8 +57,14 @@ class WhatIsWritten(Collection):
         for wrong in (['--camera', 'PINHOLE,9'], ['--camera-of', 'more'], ['--camera-of', 'more=FISH,1,2,3'],
                       ['--camera', 'x=PINHOLE,400,300,400,400,200,150'], ['--camera-of', 'mroe=PINHOLE,400,300,400,400,200,150']):
             self.check_mistake('', 'colmap', self.images, self.folder / 'x.db', *wrong)
-        self.assertRaisesRegex(ValueError, 'none of the 5 images', self.build, force=True, camera='PINHOLE,300,400,9,9,150,200')
-        self.assertEqual(self.lines[0], 'a.png: it has 400 x 300 pixels, its camera 300 x 400')
+        wrong, mask = 'PINHOLE,300,400,9,9,150,200', self.folder / 'mask.png'
+        cv2.imwrite(str(mask), np.ones((9, 9), np.uint8))
+        for told, *options in (('a.png: its camera has 300 x 400', '--camera', wrong), ('more/a.png: its camera has 300 x 400', '--camera-of', f'more={wrong}'),
+                               ('its mask .* 9 x 9', '--mask', mask), ('two cameras of more/', *['--camera-of', f'more={camera}', '--camera-of', f'./more/={camera}'])):
+            self.check_mistake(told, 'colmap', self.images, self.folder / 'x.db', *options)
+        self.assertFalse((self.folder / 'x.db').exists())
+        cv2.imwrite(str(self.images / 'small.png'), np.zeros((9, 9), np.uint8))
+        self.assertEqual(run_command('colmap', self.images, self.folder / 'x.db', '--points', '300', '--verify', 'magsac', '--camera', camera)[0], 4)
 
     def test_pairs_stored_the_other_way_round(self):
         self.assertEqual((pair_id(1, 2), pair_id(2, 1)), (2147483647 + 2,) * 2)
@@ -118,13 +124,47 @@ class Runs(Collection):
         for table, rows in old.items():
             self.assertLessEqual(set(rows), set(self.query(f'SELECT * FROM {table}')))
         grown = {row[1]: row[2:] for row in self.query('SELECT name, rows, data FROM images NATURAL JOIN keypoints')}
-        os.utime(self.images / 'more/c.png', (1, 1))
+        (self.images / 'more/c.png').write_bytes((self.images / 'more/c.png').read_bytes() + b'more')
         (self.images / 'b.png').unlink()
         self.assertEqual(self.grow(['a.png', 'd.png', 'more/c.png'])[0]['pairs'], 3)
         self.database.unlink()
         self.build(workers=1)
         self.assertEqual({row[1]: row[2:] for row in self.query('SELECT name, rows, data FROM images NATURAL JOIN keypoints')},
                          {name: row for name, row in grown.items() if name != 'b.png'})
+
+    def test_an_image_keeps_its_number(self):
+        names = 'SELECT name, image_id, camera_id FROM images ORDER BY name'
+        self.build()
+        before, points = self.query(names), self.query('SELECT * FROM keypoints')
+        for name in ('a.png', 'more/c.png'):
+            os.utime(self.images / name, (1, 1))  # as cp and rsync do
+        moved = self.images.rename(self.folder / 'moved')
+        self.images = moved
+        self.assertEqual(self.grow([])[1], 0)
+        self.assertEqual((self.query(names), self.query('SELECT * FROM keypoints')), (before, points))
+        shutil.copy(self.images / 'b.png', self.images / 'a.png')
+        self.assertEqual(self.grow(['a.png', 'b.png', 'more/c.png'])[1], 2)
+        self.assertEqual(self.query(names), before)
+        same = [data for data, in self.query("SELECT data FROM keypoints NATURAL JOIN images WHERE name < 'c'")]
+        self.assertEqual(same[0], same[1])
+        (self.images / 'a.png').write_bytes(b'no image any more')
+        self.assertEqual(self.build()['failed'], 1)
+        self.assertEqual(self.query(names), before[1:])
+        shutil.rmtree(self.images)
+        self.images.mkdir()
+        cv2.imwrite(str(self.images / 'z.png'), texture(400, 300))
+        self.assertEqual(self.build(force=True)['images'], 1)
+        self.images = self.images.rename(self.folder / 'images')
+        cv2.imwrite(str(self.images / 'z.png'), texture(400, 300, seed=5))
+        with self.assertRaisesRegex(SettingsChanged, 'other images, none of which is in'):
+            self.build()
+
+    def test_one_setting_has_many_texts(self):
+        camera = '{},400,300,690.10,690,200,150'
+        self.build(camera_of=['more/=' + camera.format('pinhole')])
+        self.assertEqual(self.grow([], camera_of=['./more=' + camera.format('PINHOLE').replace('690.10', '690.1')])[1], 0)
+        with self.assertRaisesRegex(SettingsChanged, r"settings \(camera_of \[.more/=Camera.*\], now \[\], ratio 0.9, now 0.8\): go on"):
+            self.build(ratio=.8)
 
     def test_only_images_of_new_pairs_are_described_again(self):
         self.build(pairs='sequential', neighbours=1)
@@ -271,7 +311,7 @@ class Workers(Collection):
             self.assertEqual((self.lines[1:], self.dump()), (lines, rows))
             status, _, _ = run_command('colmap', self.images, self.database, '--points', '300', '--verify', 'magsac', '--scheduler',
                                        cluster.scheduler_address)
-            self.assertEqual((status, self.dump()), (0, rows))
+            self.assertEqual((status, self.dump()), (4, rows))
             with mock.patch.object(_parallel.Cluster, 'ahead', side_effect=concurrent.futures.CancelledError), \
                     self.assertRaisesRegex(ConnectionError, 'the scheduler has gone'):
                 self.build(client=client)

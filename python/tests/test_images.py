@@ -1,7 +1,10 @@
 """What is read of image files, and what is found in them."""
+import contextlib
+import io
 import os
 import struct
 import tempfile
+import unittest
 import warnings
 import zlib
 from pathlib import Path
@@ -12,12 +15,13 @@ import numpy as np
 import opencv_iib
 from collection import Collection
 from opencv_iib.colmap import FeatureOptions
-from opencv_iib._exif import SAMPLES, exif_focal_length, exif_orientation, geo_entries, gps_place, no_data, pages_of_tiff
-from opencv_iib._images import decode_grey, decode_pages, in_8_bits, read_colour, read_grey, write_picture
+from opencv_iib._exif import exif_focal_length, exif_orientation, gps_place
+from opencv_iib._images import decode_all, decode_first, decode_grey, find_images, in_8_bits, read_grey, read_with_orientation
+from opencv_iib._tiff import tiff_bytes
 from opencv_iib.features import DETECTORS, Features, to_colmap
-from support import cv2, texture
+from support import cv2, optional, texture
 
-
+tifffile = optional('tifffile')
 PLAIN = 259, 1  # TIFF's compression: cv2's own loses some of floats
 
 
@@ -47,6 +51,18 @@ class Files(Collection):
                      'half.png: the image is damaged or cut off', 'huge.png: not an image that cv2 reads: of more than 2^30 pixels'):
             self.assertTrue(any(told in line for line in self.lines), told)
 
+    def test_images_that_this_cv2_does_not_read_are_skipped_with_a_word(self):
+        grey = texture(60, 40)
+        for name in ('a.jpe', 'b.JFIF', 'c.pnm', 'd.avif', 'e.heic', 'f.HEIC', 'g.gif'):
+            (self.images / name).write_bytes(encoded(grey, '.jpg') if name < 'd' else b'what no cv2 reads')
+        cv2.imwrite(str(self.images / 'h.png'), grey)
+        (self.images / 'h.png').rename(self.images / 'h.gif')  # in a format that every cv2 reads
+        (self.images / 'notes.txt').touch()
+        lines = []
+        self.assertEqual(find_images(self.images, lines.append), ['a.jpe', 'a.png', 'b.JFIF', 'b.png', 'c.pnm', 'h.gif', 'more/c.png'])
+        self.assertRegex(lines.pop(), r'images: 4 files are skipped, which the installed cv2 does not read \(1 .avif, 1 .gif, 2 .heic\): convert them$')
+        self.assertEqual((self.build()['images'], len(self.lines)), (7, 1))
+
     def test_other_depths_are_scaled_by_their_own_range(self):
         grey = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC)
         grey = ((grey - grey.min()) * (255 / np.ptp(grey))).astype(np.uint8)
@@ -57,7 +73,7 @@ class Files(Collection):
             for image in (plain, short, short * 16, short * 257, short * 9 + 300, plain / np.float32(255), plain.astype(np.float32), *others):
                 for suffix in ('.tif', '.png') if image.dtype == np.uint16 else ('.tif',):
                     file.write_bytes(encoded(image, suffix, *PLAIN * (suffix == '.tif')))
-                    found = read_grey(file), read_colour(str(file))
+                    found = read_grey(file), read_with_orientation(str(file))[0]
                     expected = expected or found
                     for one, other, exact in zip(found, expected, (plain.ndim == 2, True)):  # grey of colours is rounded in two ways
                         self.assertEqual((one.dtype, one.shape), (np.uint8, other.shape))
@@ -73,6 +89,7 @@ class Files(Collection):
         for values in ((1e30, np.inf), (3e38, -3e38), (-np.inf, np.nan)):
             wild = grey.astype(np.float32)
             wild[5, 5:7] = values
+            wild.view(np.uint32)[5, 5] |= 0x7F800001 if np.isnan(values).any() else 0  # NaN that signals
             file.write_bytes(encoded(wild, '.tif'))
             wide = np.where(grey < 99, np.float32(values[0]), np.float32(values[1]))
             with warnings.catch_warnings():
@@ -86,36 +103,70 @@ class Files(Collection):
                 np.testing.assert_array_equal(in_8_bits((ramp * size).astype(kind), False).ravel(), np.arange(256))
         file.write_bytes(encoded(np.full((40, 40), np.nan, np.float32), '.tif'))
         with self.assertRaisesRegex(ValueError, 'other: the image holds no finite number'):
-            read_colour(file)
+            read_with_orientation(file)
 
-    def test_masks_and_reduced_pages_are_no_pages(self):
-        path, page = self.folder / 'masked.tif', texture(60, 40)
-        write_picture(path, page, page)
-        data = bytearray(path.read_bytes())
-        at = pages_of_tiff(data)[0][1]
-        entries = {struct.unpack_from('<H', data, at + 2 + 12 * k)[0]: at + 2 + 12 * k for k in range(struct.unpack_from('<H', data, at)[0])}
-        struct.pack_into('<H', data, entries[0x0106] + 8, 4)  # a mask's pixels, which cv2 does not read
-        for kind in (1, 4, 5):
-            struct.pack_into('<HHII', data, entries[0x0153], 0x00FE, 4, 1, kind)  # in place of the kind of numbers
-            np.testing.assert_array_equal(decode_pages(bytes(data)), [page])
-
-    def test_pages_are_read_without_a_file(self):
-        path = self.folder / 'pages.tif'
+    @unittest.skipIf(tifffile is None, 'no tifffile')
+    def test_pages_of_tiff(self):
         for pages in ([texture(60, 40, seed=seed) for seed in (1, 2, 3)], [np.dstack([texture(60, 40, np.uint16, seed)] * 3) for seed in (4, 5)]):
-            write_picture(path, *pages, texture(20, 10))  # and a thumbnail
-            data = path.read_bytes()
-            with mock.patch('builtins.open', side_effect=AssertionError), mock.patch.object(cv2, 'imreadmulti', side_effect=AssertionError):
-                np.testing.assert_array_equal(decode_pages(data), pages)
-                np.testing.assert_array_equal(decode_pages(data, first_alone=True), pages[:1])
-            ok, written = cv2.imreadmulti(str(path), flags=cv2.IMREAD_UNCHANGED)
-            np.testing.assert_array_equal(written[:len(pages)], pages)
-            places, samples = pages_of_tiff(data)
-            self.assertEqual((len(places), samples), (len(pages) + 1, 1 if pages[0].ndim == 2 else 3))
-            with self.assertRaisesRegex(ValueError, 'damaged or cut off'):
-                decode_pages(data[:places[1]] + b'\xff' * 40 + data[places[1] + 40:])
-            np.testing.assert_array_equal(decode_grey(data), decode_grey(data[:places[1]] + b'\xff' * 40 + data[places[1] + 40:]))
-        swapped = struct.pack('>2sHIHHHII', b'MM', 42, 8, 1, SAMPLES, 3, 1, 1 << 16) + bytes(4)
-        self.assertEqual(pages_of_tiff(swapped), ([8], 1))
+            for largest in (2**32, -1):  # so that places have 32 bits, or 64
+                with mock.patch('opencv_iib._tiff.LARGEST', largest):
+                    data = tiff_bytes([*pages, texture(20, 10)])  # of another size
+                self.assertEqual(data[:4], b'II*\0' if largest > 0 else b'II+\0')
+                for broken in (None, tifffile.TiffPage):  # where cv2 has to read what tifffile does not
+                    with mock.patch('builtins.open', side_effect=AssertionError), contextlib.ExitStack() as stack:
+                        if broken:
+                            stack.enter_context(mock.patch.object(broken, 'asarray', side_effect=ValueError))
+                        read = decode_all(data)
+                        np.testing.assert_array_equal(decode_first(data), pages[0])
+                    np.testing.assert_array_equal(read.pages, pages)
+                    self.assertEqual(read.left_out, 1)
+        file, entry = io.BytesIO(), struct.Struct('<HHII')
+        with tifffile.TiffWriter(file) as writer:
+            for kind in (0, 1):
+                writer.write(texture(60, 40), subfiletype=kind, metadata=None)
+        for kind in (1, 4, 5):  # reduced, a mask, and both: no pages
+            read = decode_all(file.getvalue().replace(entry.pack(254, 4, 1, 1), entry.pack(254, 4, 1, kind)))
+            self.assertEqual((len(read.pages), read.left_out), (1, 0))
+        with self.assertRaisesRegex(ValueError, 'damaged or cut off'):
+            decode_all(data[:len(data) // 2])
+
+    @unittest.skipIf(tifffile is None, 'no tifffile')
+    def test_tiffs_that_cv2_alone_does_not_read_as_they_are(self):
+        grey = texture(60, 40)
+        plain = io.BytesIO()
+        tifffile.imwrite(plain, grey, metadata=None)
+        entry = struct.pack('<HHI', 0x0106, 3, 1)
+        without = plain.getvalue().replace(entry, struct.pack('<HHI', 0xFDE8, 3, 1))  # no tag says what the numbers mean
+        self.assertNotEqual(without, plain.getvalue())
+        np.testing.assert_array_equal(decode_first(without), grey)
+        np.testing.assert_array_equal(decode_grey(without), grey)
+        for channels in (2, 4, 5):  # with alpha that is not 255
+            image = np.dstack([grey, grey[::-1], grey[:, ::-1], 255 - grey, grey][:channels])
+            for largest in (2**32, -1):
+                with mock.patch('opencv_iib._tiff.LARGEST', largest):
+                    np.testing.assert_array_equal(decode_all(tiff_bytes([image])).pages, [image])
+        five, width = tiff_bytes([image]), struct.Struct('<HHII')
+        for wrong in (0, 1 << 24):
+            with self.assertRaisesRegex(ValueError, f'it has {wrong} x 40 pixels'):
+                decode_grey(five.replace(width.pack(256, 4, 1, 60), width.pack(256, 4, 1, wrong)).replace(width.pack(256, 3, 1, 60), width.pack(256, 4, 1, wrong)))
+        two = tiff_bytes([image[..., :2]])
+        with mock.patch.dict('sys.modules', tifffile=None):
+            np.testing.assert_array_equal(decode_first(plain.getvalue()), grey)
+            for data in (without, two):
+                with self.assertRaisesRegex(ValueError, r'pip install opencv-iib\[tiff\]'):
+                    decode_grey(data)
+
+    def test_tiffs_that_are_stored_turned_are_read_as_they_are_stored(self):  # which cv2 turns in any case
+        image = np.arange(600, dtype=np.uint16).reshape(20, 30)
+        entries = [(256, 3, 30), (257, 3, 20), (258, 3, 16), (259, 3, 1), (262, 3, 1), (273, 4, 8), (277, 3, 1), (278, 3, 20), (279, 4, 1200)]
+        for orientation in range(1, 9):
+            tags = sorted([*entries, (274, 3, orientation)])
+            data = b'II*\0' + struct.pack('<I', 1208) + image.tobytes() + struct.pack('<H', len(tags))
+            data += b''.join(struct.pack('<HHII', tag, kind, 1, value) for tag, kind, value in tags) + bytes(4)
+            self.assertEqual(exif_orientation(data), orientation)
+            np.testing.assert_array_equal(decode_first(data), image)
+            if tifffile:
+                np.testing.assert_array_equal(decode_all(data).pages, [image])
 
     def test_exif(self):
         # little-endian TIFF: one entry that points to the EXIF directory, and there a focal length of 28 mm
@@ -133,20 +184,23 @@ class Files(Collection):
         for data in (png, jpeg, webp, b'', tiff[:-9], big[:-1], b'II*\0' + b'\xff' * 90, jpeg[:2] + b'\xff\xe1\0\x08Exif\0\0'):
             self.assertIsNone(exif_focal_length(data, 600, 400))
 
-    def test_tiffs_of_64_bits_tell_what_those_of_32_do(self):
+    def test_exif_of_tiffs_of_64_bits(self):
         for order, head in (('<', b'II+\0'), ('>', b'MM\0+')):
-            values = struct.pack(order + '9d', .5, .5, 0, 0, 0, 0, 5e5, 4e6, 0)
-            entries = [(0x112, 3, 1, struct.pack(order + 'H6x', 6)), (33550, 12, 3, struct.pack(order + 'Q', 16)),
-                       (33922, 12, 6, struct.pack(order + 'Q', 40)), (0xA481, 2, 6, b'-9999\0\0\0')]
-            data = head + struct.pack(order + 'HHQ', 8, 0, 88) + values + struct.pack(order + 'Q', len(entries))
-            data += b''.join(struct.pack(order + 'HHQ', tag, kind, count) + value for tag, kind, count, value in entries) + bytes(8)
-            self.assertEqual((exif_orientation(data), no_data(data), geo_entries(data)),
-                             (6, '-9999', [(33550, 12, (.5, .5, 0)), (33922, 12, (0, 0, 0, 5e5, 4e6, 0))]))
-            for place in (8, 88, 104, 108, 124, 128):  # of the directory, its length, and entries that lead nowhere
+            data = head + struct.pack(order + 'HHQQHHQH6xQ', 8, 0, 16, 1, 0x112, 3, 1, 6, 0)
+            self.assertEqual(exif_orientation(data), 6)
+            for place in (8, 16, 24, 28):  # of the directory, its length, and entries that lead nowhere
                 wild = data[:place] + b'\xff' * 8 + data[place + 8:]
-                self.assertIn(exif_orientation(wild), (1, 6))
-                self.assertTrue(len(geo_entries(wild)) < 3 and exif_focal_length(wild, 60, 40) is None)
-            self.assertEqual((exif_orientation(data[:90]), no_data(data[:90]), geo_entries(data[:90])), (1, '', []))
+                self.assertEqual((exif_orientation(wild), exif_focal_length(wild, 60, 40)), (1, None))
+            self.assertEqual(exif_orientation(data[:26]), 1)
+
+    def test_numbers_that_are_not_finite_are_no_information(self):
+        for value in (np.inf, -np.inf, np.nan, 1e308, -1e308):
+            for tag in (0x112, 0x8769, 0x115):
+                data = struct.pack('<4sIHHHIIId', b'II*\0', 8, 1, tag, 12, 1, 26, 0, value)
+                self.assertEqual((exif_orientation(data), exif_focal_length(data, 60, 40)), (1, None))
+            for tag in (0x920A, 0xA405, 0xA210):
+                exif = struct.pack('<4sIHHHIIIHHHIIHHIIId', b'II*\0', 8, 1, 0x8769, 4, 1, 26, 0, 2, tag, 12, 1, 56, 0xA20E, 4, 1, 9, 0, value)
+                self.assertIsNone(exif_focal_length(exif, 60, 40))
 
     def test_exif_of_wrong_types_tells_nothing(self):
         for tag in (0x112, 0x8769, 0x8825):

@@ -12,6 +12,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import _upright
+from opencv_iib._exif import MIRRORED
 from opencv_iib._files import RECORD
 from opencv_iib.localization import Camera, FoundLocation, Localizer, Location, NoLocation, smooth_poses
 from opencv_iib.localization import run as runs
@@ -108,7 +109,10 @@ class Localization(OnWall):
         for orientation in STORED:
             turn = _upright.Turn(orientation, *stored(self.grey(), orientation).shape[1::-1])
             Path(folder, f'{orientation}.png').write_bytes(png(stored(self.grey(), orientation), orientation))
-            if orientation in (1, 3, 6, 8):
+            if orientation in MIRRORED:
+                with self.assertRaisesRegex(opencv_iib.error, 'stored mirrored'):
+                    localizer.localize(self.grey(), CAMERA, None, orientation)
+            else:
                 width, height = stored(self.grey(), orientation).shape[::-1]
                 camera = Camera('PINHOLE', width, height, (300, 300, width / 2, height / 2))
                 location = found[orientation] = localizer.localize(stored(self.grey(), orientation), camera, None, orientation)
@@ -121,6 +125,11 @@ class Localization(OnWall):
                 np.testing.assert_allclose(near.cam_from_world, location.cam_from_world, atol=.02)
         status, errors = self.localize(out, '--camera', 'SIMPLE_PINHOLE,240,320,300,120,160', images=folder)
         self.assertEqual((status, sorted(trajectory(out))), (4, ['6', '8']))
+        for more in ((), ('--no-exif',)):  # only EXIF tells of a mirrored image
+            for command in (('localize', '--out', self.path('l')), ('update', '--out', self.path('u'))):
+                errors = run_command(*command, '--map', self.map, '--images', folder, *more)[2]
+                for orientation in MIRRORED:
+                    self.assertRegex(errors, rf'{orientation}.png: its EXIF data say that it is stored mirrored \(orientation {orientation}\)')
         np.testing.assert_allclose(trajectory(out)['6'][:3], -found[6].cam_from_world[:3, :3].T @ found[6].cam_from_world[:3, 3], atol=.01)
         self.assertEqual(self.localize(out, '--camera', 'SIMPLE_PINHOLE,240,320,300,120,160', '--no-exif', images=folder)[0], 3)
         status, text, _ = run_command('update', '--map', self.map, '--images', folder, '--out', self.path('new'), '--camera', CAMERA)

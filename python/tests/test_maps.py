@@ -39,10 +39,17 @@ class Maps(OnWall):
             turned[:2, :2] = _upright.Turn(orientation, *image.shape[::-1]).matrix[:2, :2]
             camera = Camera.parse(CAMERA).upright({6: 8, 8: 6}.get(orientation, orientation))
             posed.append(_core.PosedImage(name, camera, turned @ self.poses[name], np.empty((0, 2))))
+        Path(images, 'mirrored.png').write_bytes(png(image, 2))
+        posed.append(_core.PosedImage('mirrored.png', Camera.parse(CAMERA), np.eye(4), np.empty((0, 2))))
         os.makedirs(model)
         _core.writeModel(model, posed)
-        self.assertEqual(run_command('map', '--model', model, '--images', images, '--out', out, '--points', '400')[0], 0)
+        for more in ((), ('--no-exif',)):
+            self.assertRegex(run_command('map', '--model', model, '--images', images, '--out', self.path('m'), '--points', '400', *more)[2],
+                             r'(?m)^mirrored.png: .* stored mirrored \(orientation 2\).*: left out of the map$')
+        status, _, _ = run_command('map', '--model', model, '--images', images, '--out', out, '--points', '400')
+        self.assertEqual(status, 4)
         self.check(Localizer(out).localize(self.grey(), CAMERA))
+        os.unlink(os.path.join(images, 'mirrored.png'))
         Path(images, 'query.png').write_bytes(png(stored(self.grey(), 6), 6))
         for name in turns:
             os.unlink(os.path.join(images, name))
@@ -113,6 +120,13 @@ class Maps(OnWall):
         self.assertEqual(status, 0, errors)
         self.check(Localizer(made).localize(photograph(wall(3), pose(*self.truth['c'])), CAMERA))
         self.assertRegex(Localizer(made).localize(self.grey(), CAMERA).reason, 'too few')  # recommended points would be seen
+
+    def test_nothing_is_said_with_quiet(self):
+        arguments = 'map', '--model', self.model, '--images', self.images, '--points', '300', '--out', self.path('map')
+        os.makedirs(arguments[-1])
+        Path(arguments[-1], '.DS_Store').touch()  # which is no map
+        for more in ((), ('--force',)):
+            self.assertEqual(run_command(*arguments, '--quiet', *more), (0, '', ''))
 
     def test_an_interrupted_map(self):
         images, count = [], 40

@@ -13,9 +13,8 @@ from unittest import mock
 import numpy as np
 
 from opencv_iib.align import align
-from opencv_iib._exif import geo_entries, no_data
 from opencv_iib._files import RECORD
-from opencv_iib._images import decode_pages, write_picture
+from opencv_iib._images import decode_all, decode_first, write_picture
 from opencv_iib.features import FeatureOptions
 from opencv_iib.localization import Camera
 from opencv_iib.measure import match_images
@@ -23,6 +22,7 @@ from opencv_iib.geometry import ImageAligner
 from opencv_iib.refinement import prepared, propagateMatches
 from support import REPOSITORY, InFolder, cv2, optional, run_command, texture
 
+NEEDS_TIFFFILE = unittest.skipIf(optional('tifffile') is None, 'no tifffile')
 SCENES = REPOSITORY / 'tools/synthetic'
 
 
@@ -128,7 +128,12 @@ class Match(Commands):
         for expected in (True, False):
             with mock.patch('opencv_iib.measure.show_the_same', return_value=expected) as verdict:
                 status, out, _ = run_command('match', a, b, '--out', self.folder / 'm.json')
-            self.assertEqual((verdict.call_count, 'may not show the same' in out, status), (1 if expected else 2, not expected, 0 if expected else 3))
+                found = match_images(a, b)
+                for suffix in ('csv', 'npz'):
+                    found.save(self.folder / f'm.{suffix}')
+                self.assertEqual({json.loads((self.folder / 'm.json').read_text())['found'], bool(np.load(self.folder / 'm.npz')['found']),
+                                  *(row['found'] == '1' for row in self.rows('m.csv'))}, {expected})
+            self.assertEqual((verdict.call_count // 2, 'may not show the same' in out, status), (1 if expected else 2, not expected, 0 if expected else 3))
 
     def test_nothing_found_and_mistakes(self):
         a, flat = self.write('a.png', self.world((4, 4))), self.write('flat.png', np.zeros((360, 480), np.uint8))
@@ -140,8 +145,12 @@ class Match(Commands):
         self.check_mistake('no folder', 'match', a, a, '--out', self.folder / 'none/m.csv')
         for arguments, told in ((['--camera', 'PINHOLE,480,360,400'], 'PINHOLE'), (['--camera', 'PINHOLE,9,9,400,400,240,180'], '480 x 360'),
                                 (['--camera', 'simple_pinhole,480,360,400,240,180'] * 3, '3 cameras'),
-                                (['--picture', self.folder / 'no.suffix'], 'end its name')):
+                                *((['--picture', self.folder / name], 'end its name') for name in ('no.suffix', 'x.exr', 'x.pgm'))):
             self.check_mistake(told, 'match', a, a, '--out', out, *arguments)
+        for name in ('x.h5', 'x.png', 'x.npy', 'x.parquet', 'x'):
+            self.check_mistake('end its name in .csv, .json or .npz', 'match', a, a, '--out', self.folder / name)
+            self.assertFalse((self.folder / name).exists())
+        self.assertEqual(run_command('match', a, '--out', '/dev/null', a)[0], 0)
 
     def test_what_is_written_is_what_was_measured(self):
         picture = cv2.resize(texture(200, 150, seed=4), (6200, 300), interpolation=cv2.INTER_CUBIC)
@@ -355,6 +364,9 @@ class Align(Commands):
         self.assertEqual([row['file'] for row in rows], ['a.png', 'b.png', 'c.png', 'd.png'])
         self.assertEqual((self.folder / 'out/a.png').stat().st_ino, first)
         os.utime(paths[1], (1, 1))
+        self.align(*paths, calls=0)
+        with open(paths[1], 'ab') as file:
+            file.write(b'more')
         self.align(*paths, calls=1)
         self.align(*paths, '--model', 'affine', calls=4)
         self.assertEqual(len(self.align(*paths[:2], '--model', 'affine', calls=0)), 1)
@@ -422,7 +434,7 @@ class Align(Commands):
         reference, image, pages, parts = pair
         row, = self.align(reference, image, '--model', 'translation', *options)
         self.assertEqual(row['verdict'], 'aligned')
-        written = decode_pages((self.folder / 'out' / row['file']).read_bytes())
+        written = decode_all((self.folder / 'out' / row['file']).read_bytes()).pages
         self.assertEqual([(page.dtype, page.shape) for page in written], [(page.dtype, page.shape) for page in pages])
         for page, part in zip(written, parts):
             inside = page[40:-10, 50:-10]
@@ -431,6 +443,7 @@ class Align(Commands):
             self.assertFalse(np.nan_to_num(page[:15, :20]).any())
         return row, written
 
+    @NEEDS_TIFFFILE
     def test_six_encodings_give_the_same_transform_and_are_written_as_they_were_read(self):
         kinds = (np.uint8, lambda a: a.astype(np.uint16) * 16, np.uint16, lambda a: a.astype(np.uint16) * 257,
                  lambda a: (a / 255).astype(np.float32), np.float32)
@@ -440,14 +453,14 @@ class Align(Commands):
         for pair in self.shifted(*kinds[:4], suffix='.png'):
             self.assertEqual(self.check_shifted(pair)[0]['file'][-4:], '.png')
 
+    @NEEDS_TIFFFILE
     def test_channels_and_pages_are_written_as_they_were_read(self):
         def alpha(depth):
             return lambda a: np.dstack([a, a, a, np.full_like(a, 255)]).astype(depth)
         others = [alpha(np.uint8), alpha(np.uint16), lambda a: np.dstack([a, 255 - a, a / 2]).astype(np.float32), lambda a: a.astype(np.int16) - 100,
                   lambda a: [a.astype(np.uint16), (255 - a).astype(np.uint16), a.astype(np.uint16) * 100], float,
                   lambda a: a.astype(np.int32) * 100000]
-        if optional('tifffile'):
-            others += [lambda a: np.dstack([a, a, a, a, a]).astype(np.uint16), lambda a: np.dstack([a, np.full_like(a, 255)]).astype(np.uint8)]
+        others += [lambda a: np.dstack([a, a, a, a, a]).astype(np.uint16), lambda a: np.dstack([a, np.full_like(a, 255)]).astype(np.uint8)]
         for n, pair in enumerate(self.shifted(*others)):
             with self.subTest(n):
                 self.check_shifted(pair)
@@ -456,6 +469,7 @@ class Align(Commands):
         _, (written,) = self.check_shifted(pair)
         self.assertEqual((written[..., 3].min(), written[30:, 40:, 3].min()), (0, 255))
 
+    @NEEDS_TIFFFILE
     def test_pixels_without_data_stay_without(self):
         pair, = self.shifted(np.float32)
         reference, image, (whole,), (part,) = pair
@@ -465,20 +479,64 @@ class Align(Commands):
             write_picture(image, part, no_data=text)
             row, = self.align(reference, image, '--model', 'translation', '--interpolation', 'cubic')
             data = (self.folder / 'out' / row['file']).read_bytes()
-            page = decode_pages(data)[0]
-            self.assertEqual((no_data(data), row['verdict']), (text, 'aligned'))
+            page = decode_first(data)
+            self.assertEqual((decode_all(data).no_data, row['verdict']), (text, 'aligned'))
             np.testing.assert_array_equal(page[[125, 5], [150, 5]], [value, value])
             known = page[np.isfinite(page) & (page != -9999)]
             self.assertTrue(-40 < known.min() and known.max() < 300 and .8 < known.size / whole.size < .93)
 
+    @NEEDS_TIFFFILE
+    def test_colours_with_a_channel_that_equals_no_data_stay(self):
+        pair, = self.shifted(lambda a: np.dstack([np.zeros_like(a), a // 2 + 100, np.full_like(a, 255)]).astype(np.uint8))
+        reference, image, (whole,), (part,) = pair
+        part[100:130, 100:150] = 0
+        write_picture(image, part, no_data='0')
+        row, = self.align(reference, image, '--model', 'translation', '--interpolation', 'nearest')
+        page = decode_first((self.folder / 'out' / row['file']).read_bytes())
+        shown = page[..., 2] > 0
+        self.assertFalse(page[~shown].any())
+        np.testing.assert_allclose(shown.mean(), (610 * 460 - 30 * 50) / (640 * 480), atol=.02)
+        np.testing.assert_array_equal(page[shown][:, [0, 2]].T, [[0], [255]] * np.ones(shown.sum(), int))
+        pair, = self.shifted(lambda a: np.dstack([a, a, a]).astype(np.int16))
+        pair[3][0][100:130, 100:150, 1] = -9999  # one channel without data, whose others stay
+        write_picture(pair[1], pair[3][0], no_data='-9999')
+        row, = self.align(*pair[:2], '--model', 'translation', '--interpolation', 'cubic')
+        page = decode_first((self.folder / 'out' / row['file']).read_bytes())
+        self.assertEqual(page[130, 150, 1], -9999)
+        self.assertTrue(page[130, 150, 0] >= -40 and ((page == -9999) | (page > -60)).all())
+
+    @NEEDS_TIFFFILE
+    def test_previews_are_scaled_by_what_has_data(self):
+        for kind, value in ((np.float32, -9999), (np.float32, np.nan), (np.uint16, 65535)):
+            pair, = self.shifted(kind)
+            reference, image, (whole,), (part,) = pair
+            part[:200] = value
+            write_picture(image, part, no_data=str(value))
+            row, = self.align(reference, image, '--model', 'translation')
+            view = cv2.imread(str(self.folder / f"out/views/{row['file']}.jpg"), cv2.IMREAD_GRAYSCALE)
+            self.assertGreater(view[240:470, 50:630].std(), 25)
+        part[:] = 65535
+        write_picture(image, part, no_data='65535')
+        self.align(reference, image, status=3)
+
+    @NEEDS_TIFFFILE
+    def test_pages_of_another_size_are_left_out_with_a_word(self):
+        pair, = self.shifted(np.uint16)
+        write_picture(pair[1], *pair[3], texture(60, 40))
+        for crop in ((), ('--crop',)):
+            status, _, errors = run_command('align', *pair[:2], '--out', self.folder / 'out', '--model', 'translation', *crop)
+            self.assertEqual((status, errors.count('i0.tif: 1 of its pages are left out')), (0, 1))
+
+    @NEEDS_TIFFFILE
     def test_no_data_that_no_pixel_can_have_tells_nothing(self):
-        for dtype, text in ((np.uint8, '-9999'), (np.uint8, 'nan'), (np.float32, '1e39')):
+        for dtype, text in ((np.uint8, '-9999'), (np.uint8, 'nan'), (np.float32, '1e39'), (np.uint16, 'none')):
             pair, = self.shifted(dtype)
             reference, image, _, (part,) = pair
             write_picture(image, part, no_data=text)
             row, = self.align(reference, image, '--model', 'translation')
             self.assertEqual(row['verdict'], 'aligned')
 
+    @NEEDS_TIFFFILE
     def test_pixels_keep_their_places_on_the_earth(self):
         keys = [(34735, 3, (1, 1, 0, 1, 3072, 34737, 5, 0)), (34737, 2, 'here|')]
         scale = [(33550, 12, (.5, .5, 0)), (33922, 12, (10, 20, 0, 4e5 + .25, 5e6, 0))]
@@ -490,7 +548,7 @@ class Align(Commands):
             write_picture(reference, whole, geo=[*own, *keys])
             for crop in ((), ('--crop',)):
                 row, = self.align(reference, image, '--model', 'translation', *crop)
-                written = [geo_entries((self.folder / 'out' / name).read_bytes()) for name in (row['file'], 'reference.tif')]
+                written = [decode_all((self.folder / 'out' / name).read_bytes()).geo for name in (row['file'], 'reference.tif')]
                 self.assertEqual(written[0], written[1])
                 self.assertEqual(written[0][-2:], keys)
                 x, y = json.loads((self.folder / 'out/align.json').read_text())['part'][:2]
@@ -501,11 +559,15 @@ class Align(Commands):
                     at = np.reshape(written[0][0][2], (4, 4))
                     np.testing.assert_allclose(at @ [7, 8, 0, 1], np.reshape(matrix[0][2], (4, 4)) @ [7 + x, 8 + y, 0, 1])
         row, = self.align(reference, image, '--model', 'translation', '--format', 'png')
-        self.assertEqual((row['file'], geo_entries((self.folder / 'out' / row['file']).read_bytes())), ('i0.png', []))
+        self.assertEqual(row['file'], 'i0.png')
         data = reference.read_bytes()
         wrong = data.replace(bytes.fromhex('af87 0300'), bytes.fromhex('af87 0c00'))  # numbers of another type
-        self.assertEqual((len(geo_entries(data)), geo_entries(wrong), geo_entries(data[:20])), (2, [], []))
+        self.assertEqual((len(decode_all(data).geo), decode_all(wrong).geo), (2, ()))
+        write_picture(image, part, geo=[(33550, 12, (np.inf, np.nan, 0))], no_data='inf')
+        self.assertEqual(decode_all(image.read_bytes()).geo, ())
+        self.align(reference, image, '--model', 'translation')
 
+    @NEEDS_TIFFFILE
     def test_formats_and_interpolation(self):
         pair, = self.shifted(np.uint8, suffix='.jpg')
         self.assertEqual([self.check_shifted(pair, *options)[0]['file'] for options in ((), ('--format', 'png'), ('--format', 'TIFF'))],

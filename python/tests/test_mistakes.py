@@ -1,6 +1,8 @@
 """What a user gets wrong is told in words of Python: what it is, and what to do."""
+import contextlib
 import inspect
 import unittest
+import warnings
 from pathlib import Path
 from unittest import mock
 
@@ -69,6 +71,39 @@ class Texts(InFolder):
                             self.assertNotIn('incompatible function arguments', str(e))
                             self.assertNotIn('std::', str(e))
         self.assertGreater(calls, 500)
+
+    def test_arrays_without_numbers(self):
+        image, points = texture(60, 60), grid()
+        for matches in ([[]], ((),), ((), ()), np.zeros((5, 0), np.int32), np.zeros((0, 2), np.int32), np.zeros(0), []):
+            self.assertEqual(len(opencv_iib.refineMatches(image, points, image, points, matches).points1), 0)
+            self.assertEqual(len(opencv_iib.propagateMatches(image, points, image, points, matches).points1), 0)
+            self.expect(opencv_iib.error, '0 matches', lambda: opencv_iib.estimateRotation(points, points, matches))
+        self.assertFalse(opencv_iib.findRelativePose(np.zeros((9, 0)), np.zeros((9, 0)), np.eye(3), np.eye(3)).found)
+        for flat in (np.zeros(5, np.uint8), np.zeros(0, np.uint8), np.zeros((5, 0), np.uint8)):
+            for orientation in (1, 6):
+                for given in ((flat, 9, None), (image, 9, flat)):
+                    if flat.ndim == 1 and flat.size:
+                        self.expect(opencv_iib.error, '2 or 3 dimensions', lambda: opencv_iib.detect_and_describe(*given, orientation))
+                    else:  # no image, and no mask, as OpenCV's classes have it
+                        opencv_iib.detect_and_describe(*given, orientation)
+
+    def test_no_shape_ends_in_a_bare_error(self):
+        kept = warnings.catch_warnings()
+        kept.__enter__()
+        self.addCleanup(kept.__exit__, None, None, None)
+        warnings.simplefilter('ignore')
+        index = MappedIndex.create(self.folder, [8])
+        index.add(np.zeros((3, 8), np.uint8))
+        owners = IIB(), HessianDetector(), NormalizedDetector(HessianDetector()), HierarchicalMatcher(), index, Camera.parse('PINHOLE,9,9,9,9,4,4')
+        calls = [getattr(opencv_iib, name) for name in opencv_iib.__all__ if inspect.isfunction(getattr(opencv_iib, name))]
+        calls += [method for owner in owners for name, method in inspect.getmembers(owner, inspect.isroutine) if name[0] != '_' and name not in ('save', 'write')]
+        shapes = [[[]], ((),), *(np.zeros(shape, kind) for shape in ((5, 0), (0, 5), (5,), (0,), (1, 1), (2, 2, 2, 2), (3, 0, 3), (0, 0, 3))
+                                 for kind in (np.uint8, np.float32))]
+        for call in calls:
+            needed = [name for name, parameter in inspect.signature(call).parameters.items() if parameter.default is inspect.Parameter.empty]
+            for array in shapes:
+                with self.subTest(call=call, array=array), contextlib.suppress(TypeError, ValueError, AttributeError, opencv_iib.error):
+                    call(**dict.fromkeys(needed, array))
 
     def test_numbers(self):
         self.expect(ValueError, 'maxFeatures is 3000000000', lambda: HessianDetector(3000000000))

@@ -10,14 +10,14 @@ from unittest import mock
 import numpy as np
 
 from collection import Collection
-from opencv_iib.colmap import pairs as pair_lists
-from opencv_iib import match_list
+from opencv_iib import _pairs as pair_lists, match_list
 from opencv_iib.colmap import FeatureOptions, hloc, pipeline
 from opencv_iib._exif import gps_place
 from opencv_iib._images import find_images
 from opencv_iib.colmap.database import MAX_IMAGE_ID
 from opencv_iib.measure import match_images
-from support import optional, run_command
+from opencv_iib._hdf5 import new_hdf5
+from support import files_end_at, optional, run_command
 
 fcntl, h5py = optional('fcntl'), optional('h5py')
 
@@ -48,8 +48,8 @@ class Lists(Collection):
         alone = match_images(self.images / 'a.png', self.images / 'b.png', self.folder / 'alone.csv', options=FeatureOptions(points=300))
         self.assertEqual((out / 'a.png/b.png.csv').read_text(), (self.folder / 'alone.csv').read_text())
         self.assertEqual(rows[1]['matches'], str(len(alone.bits)))
-        os.utime(self.images / 'b.png', (1, 1))
-        self.match(out, described=['a.png', 'b.png'])
+        os.utime(self.images / 'b.png', (1, 1))  # as cp and rsync do
+        self.match(out, described=[])
         self.match(self.folder / 'posed', 'a.png b.png\n', 0, *camera)
         with open(self.folder / 'posed/pairs.csv', newline='') as file:
             self.assertAlmostEqual(float(next(csv.DictReader(file))['r11']), 1, delta=.01)
@@ -67,6 +67,95 @@ class Lists(Collection):
         mine.write_text('precious')
         self.match(out, 'b.png more/c.png\n', 1, described=[])
         self.assertEqual(mine.read_text(), 'precious')
+
+    def rows(self, out):
+        """Of pairs.csv or a file in HDF5: each pair, and whether it is found."""
+        if out.suffix == '.h5':
+            with h5py.File(out) as file:
+                return [(first, second, bool(file[first][second].attrs['found'])) for first in file if first[1] == '.' for second in file[first]]
+        with open(out / 'pairs.csv', newline='') as file:
+            return [(row['image_a'], row['image_b'], row['found'] == '1') for row in csv.DictReader(file)]
+
+    def test_a_pair_has_one_row_whatever_changes(self):
+        pairs = [('a.png', 'b.png'), ('a.png', 'd.png'), ('b.png', 'd.png')]
+        text = ''.join(' '.join(pair) + '\n' for pair in pairs)
+        for name in ('out', 'x.h5')[:1 + (h5py is not None)]:
+            with self.subTest(name):
+                out = self.folder / name
+                shutil.copy(self.images / 'more/c.png', self.images / 'd.png')
+                self.match(out, text)
+                size = out.stat().st_size
+                if name == 'x.h5':
+                    with h5py.File(out, 'a') as file:
+                        file['mine'] = file['more/notes'] = [1, 2]
+                self.match(out, text, 0, '--preset', 'SMALL', described=['a.png', 'b.png', 'd.png'])
+                self.match(out, text, described=['a.png', 'b.png', 'd.png'])
+                shutil.copy(self.images / 'a.png', self.images / 'd.png')  # other content
+                self.match(out, text, described=['a.png', 'b.png', 'd.png'])
+                self.assertEqual(sorted(self.rows(out)), [(*pair, True) for pair in pairs])
+                (self.images / 'd.png').write_bytes(b'no image any more')
+                for _ in range(2):
+                    self.match(out, text, 4)
+                self.assertEqual(self.rows(out), [('a.png', 'b.png', True)])
+                if name == 'x.h5':
+                    self.assertLess(out.stat().st_size, size)
+                    with h5py.File(out) as file:
+                        self.assertEqual((file['mine'][1], file['more/notes'][1]), (2, 2), 'what the user added')
+                else:
+                    self.assertEqual(sorted(path.name for path in out.rglob('*') if path.is_file()), ['b.png.csv', 'pairs.csv'])
+
+    def test_an_interrupted_or_killed_list_goes_on(self):
+        for name, owner, function in (('one', match_list, 'measure'), ('two', match_list, 'write_whole'), ('x.h5', match_list, 'new_hdf5')):
+            if name == 'x.h5' and h5py is None:
+                continue
+            out, calls, real = self.folder / name, [], getattr(owner, function)
+
+            def stop(*arguments):
+                calls.append(arguments)
+                if len(calls) == 2 or name == 'x.h5':
+                    raise KeyboardInterrupt
+                return real(*arguments)
+            with self.subTest(name):
+                (self.folder / 'pairs.txt').write_text('a.png more/c.png\na.png b.png\n')
+                with mock.patch.object(owner, function, stop):
+                    status, _, errors = run_command('match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', out, '--points', 300,
+                                                    '--workers', 1)
+                self.assertEqual((status, errors.splitlines()[-1]), (130, 'interrupted; the same command goes on from here'))
+                mine, left = out.with_name('mine.12-3.tmp'), {'one': out / 'pairs.csv.12-3.tmp', 'two': out / 'a.png/more-c.png.csv.12-3.tmp'}
+                for path in (mine, left.get(name, self.folder / 'x.h5.12-3.tmp')):
+                    path.touch()  # as kill -9 leaves the second
+                self.match(out, described=['a.png', 'b.png'] if name == 'one' else [])
+                mine.unlink()
+                self.assertEqual(sorted(self.rows(out)), [('a.png', 'b.png', True), ('a.png', 'more-c.png' if name == 'x.h5' else 'more/c.png', True)])
+                self.assertEqual([path for path in self.folder.rglob('*.partial*')] + [path for path in self.folder.rglob('*.tmp')], [])
+        (self.folder / 'new').mkdir()
+        for out, name in (('new', 'new/pairs.csv.partial'), ('new.h5', 'new.h5.partial-journal'))[:1 + (h5py is not None)]:
+            (self.folder / name).write_bytes(b'precious' * 1000)
+            self.match(self.folder / out, status=1)
+            self.assertEqual((self.folder / name).read_bytes(), b'precious' * 1000)
+
+    @unittest.skipIf(h5py is None, 'no h5py')
+    def test_a_full_disk_is_one_line(self):
+        out = self.folder / 'x.h5'
+        for size in (1, 5000, 50000):
+            with self.assertRaises(OSError), files_end_at(size), new_hdf5(str(out)) as file:
+                for n in range(100):
+                    file.create_group(f'a/{n}')['x'] = np.arange(n * 100)
+        out.unlink()
+        self.match(self.folder / 'whole.h5', 'a.png b.png\n')
+        size = (self.folder / 'whole.h5').stat().st_size
+        for limit in (size // 4, size - 1000):
+            with files_end_at(limit):
+                self.check_error('disk|cannot be written', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', out, '--points', 300)
+            self.assertFalse(out.exists() or [path for path in self.folder.rglob('*.tmp')])
+        self.match(out, 'a.png b.png\n')
+
+    def test_one_pair_that_cannot_be_written_ends_nothing(self):
+        long = 'n' * 248 + '.png'
+        shutil.copy(self.images / 'b.png', self.images / long)
+        out = self.folder / 'out'
+        self.match(out, f'a.png {long}\n{long} b.png\na.png b.png\n', 4)
+        self.assertEqual(self.rows(out), [(long, 'b.png', True), ('a.png', 'b.png', True)])
 
     def test_hloc_reads_the_file(self):
         if h5py is None:
@@ -92,7 +181,7 @@ class Lists(Collection):
         h5py.File(out, 'w').close()
         with open(out, 'rb') as file:
             fcntl.flock(file, fcntl.LOCK_EX)
-            with self.assertRaisesRegex(BlockingIOError, 'x.h5 is being read or written by another process'):
+            with self.assertRaisesRegex(BlockingIOError, 'x.h5 is being written by another process'):
                 match_list._Hdf5(str(out))
 
     def test_images_that_cannot_be_read_and_mistakes(self):
@@ -106,7 +195,19 @@ class Lists(Collection):
                            '--out', self.folder / 'new', '--camera', 'PINHOLE,9,9,5,5,4,4')
         self.assertFalse((self.folder / 'new').exists())
         self.check_mistake('there is no list', 'match', '--pairs', self.folder / 'gone', '--images', self.images, '--out', out)
-        self.check_error('not the names of two images', 'match', '--pairs', self.images / 'broken.png', '--images', self.images, '--out', out)
+        self.check_mistake('no image is called no or image', 'match', '--pairs', self.images / 'broken.png', '--images', self.images, '--out', out)
+        for text, told in (('', 'has no pair'), ('a.png a.png\n', 'a.png is paired with itself')):
+            (self.folder / 'list').write_text(text)
+            self.check_mistake(told, 'match', '--pairs', self.folder / 'list', '--images', self.images, '--out', out)
+            self.check_mistake(told, 'colmap', self.images, self.folder / 'x.db', '--pairs', self.folder / 'list')
+        for name in ('-', '/dev/stdout', 'x.json', 'x.csv', 'x.parquet'):
+            self.check_mistake('in .h5 or .hdf5', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out',
+                               name if len(name) == 1 or name[0] == '/' else self.folder / name)
+            self.assertFalse((self.folder / name).exists() and name[0] == 'x')
+        (self.folder / 'empty').mkdir()
+        (self.folder / 'empty/pairs.csv').touch()
+        self.check_error('pairs.csv is there, and not of this command', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images,
+                         '--out', self.folder / 'empty')
         for wrong in ([], ['--images', self.images], ['--images', self.images, '--out', out, 'a.png'], ['--images', self.images, '--out', out, '--picture', 'x']):
             self.check_mistake('goes with', 'match', '--pairs', self.folder / 'pairs.txt', *wrong)
         self.check_mistake('two images are needed', 'match', self.images / 'a.png')
@@ -151,7 +252,7 @@ class Pairs(Collection):
     def test_lists(self):
         self.assertEqual(self.build_listed('# pairs\na.png more/c.png\n')['pairs'], 1)
         with mock.patch.object(pipeline, 'describe_images', side_effect=AssertionError), \
-                self.assertRaisesRegex(ValueError, 'pairs.txt:1: not the names of two images'):
+                self.assertRaisesRegex(ValueError, 'pairs.txt:1: no image is called nothing.png'):
             self.build_listed('a.png nothing.png\n')
         self.listing.write_bytes(b'a.png b.png\ncaf\xe9.png a.png\n')
         for arguments in (['colmap', self.images, self.folder / 'x.db', '--pairs', self.listing],
@@ -159,6 +260,24 @@ class Pairs(Collection):
             self.check_error('pairs.txt:2: not UTF-8', *arguments)
         (self.images / 'broken.png').write_bytes(b'no image')
         self.assertEqual(self.build_listed('a.png broken.png\nb.png a.png\n')['pairs'], 1)
+
+    def test_lines_as_programs_write_them(self):
+        numbers = {'a.png': 1, 'more/c.png': 2, 'b 1,2.png': 3}
+        for line in ('a.png more/c.png', 'a.png,more/c.png', '"a.png", "more/c.png"', './a.png ./more/c.png', 'a.png more\\c.png 0.87', 'a.png;more/c.png;1e-3'):
+            self.listing.write_text('\ufeff\n  \n' + line + '\n')
+            self.assertEqual(pair_lists.read_list(self.listing, numbers), ([(1, 2)], []), line)
+        self.listing.write_text('b 1,2.png a.png 3\ngone.png a.png\na.png a.png\none two three\nmore/c.png a.png\n')
+        pairs, wrong = pair_lists.read_list(self.listing, numbers)
+        self.assertEqual(pairs, [(3, 1), (2, 1)])
+        self.assertEqual([text.partition('pairs.txt:')[2] for text in wrong],
+                         ['2: no image is called gone.png', '3: a.png is paired with itself', '4: not the names of two images'])
+
+    def test_one_line_ends_no_list(self):
+        self.listing.write_text('a.png gone.png\na.png b.png\n')
+        for arguments in (['match', '--images', self.images, '--out', self.folder / 'out'], ['colmap', self.images, self.database, '--verify', 'magsac']):
+            status, _, errors = run_command(*arguments, '--pairs', self.listing, '--points', 300)
+            self.assertEqual(status, 4)
+            self.assertIn('pairs.txt:1: no image is called gone.png\n', errors)
 
     def test_retrieval(self):
         self.assertEqual(self.build(pairs='retrieval', neighbours=1)['images'], 3)
@@ -173,8 +292,8 @@ class Pairs(Collection):
             tiff = struct.pack('<4sIHHHIII', b'II*\0', 8, 1, 0x8825, 4, 1, 26, 0)
             tiff += struct.pack('<H', 6) + struct.pack('<HHI2s2x', 1, 2, 2, b'N\0' if north > 0 else b'S\0') + struct.pack('<HHII', 2, 5, 3, 104)
             tiff += struct.pack('<HHI2s2x', 3, 2, 2, b'E\0' if east > 0 else b'W\0') + struct.pack('<HHII', 4, 5, 3, 128)
-            tiff += struct.pack('<HHIB3x', 5, 1, 1, height < 0) + struct.pack('<HHII', 6, 5, 1, 152) + struct.pack('<I', 0)
-            tiff += rationals(north) + rationals(east) + struct.pack('<II', abs(height) * 10, 10)
+            tiff += struct.pack('<HHIB3x', 5, 1, 1, (height or 0) < 0) + struct.pack('<HHII', 6 if height is not None else 99, 5, 1, 152)
+            tiff += struct.pack('<I', 0) + rationals(north) + rationals(east) + struct.pack('<II', abs(height or 0) * 10, 10)
             data = (self.images / name).read_bytes()
             (self.images / name).write_bytes(data[:33] + struct.pack('>I', len(tiff)) + b'eXIf' + tiff + struct.pack('>I', zlib.crc32(b'eXIf' + tiff))
                                              + data[33:])
@@ -185,7 +304,16 @@ class Pairs(Collection):
         located('more/c.png', -48.1, 11.5)
         a, b, c = (gps_place(self.images / name) for name in ('a.png', 'b.png', 'more/c.png'))
         self.assertAlmostEqual(np.linalg.norm(a - b), np.hypot(.0009 * np.pi / 180 * 6371000, 30), delta=.1)
-        np.testing.assert_allclose(c, a * [1, -1, -1], atol=1e-3)
+        np.testing.assert_allclose(c, a * [1, -1, -1, 1], atol=1e-3)
+        for name, *place in (('n.png', 48.1, -11.5, None), ('o.png', 0, 0, 9)):
+            shutil.copy(self.images / 'a.png', self.images / name)
+            located(name, *place)
+        places = [gps_place(self.images / name) for name in ('n.png', 'o.png')]
+        self.assertTrue(np.isnan(places[0][3]) and places[1] is None, places)
+        far = [a + [0, 0, 0, 3000], a + [0, 200, 0, 3000], places[0]]  # in the mountains
+        self.assertEqual(list(pair_lists.nearest(far, 1)), [(0, 2), (1, 0), (2, 0)], 'an unknown height is not that of the sea')
+        for name in ('n.png', 'o.png'):
+            (self.images / name).unlink()
         shutil.copy(self.images / 'b.png', self.images / 'd.png')
         self.assertEqual(self.build(pairs='gps', neighbours=1)['pairs'], 3)
         pairs = {frozenset(pair) for pair in self.query('SELECT pair_id / 2147483647, pair_id % 2147483647 FROM matches')}

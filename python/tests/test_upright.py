@@ -12,7 +12,7 @@ from collection import Collection
 from opencv_iib import _upright
 from opencv_iib.align import align
 from opencv_iib.colmap import FeatureOptions
-from opencv_iib._exif import exif_orientation
+from opencv_iib._exif import MIRRORED, exif_orientation
 from opencv_iib._images import read_with_orientation
 from opencv_iib.features import Features
 from opencv_iib.measure import match_images
@@ -129,6 +129,15 @@ class Commands(Collection):
             else:
                 self.assertRegex(wrong, 'may not show the same')
 
+    def test_a_pose_of_mirrored_images_is_refused(self):
+        for orientation in MIRRORED:
+            path = self.write(self.b, orientation)
+            height, width = stored(self.b, orientation).shape
+            cameras = ['SIMPLE_PINHOLE,400,300,500,200,150', f'SIMPLE_PINHOLE,{width},{height},500,{width / 2},{height / 2}']
+            for exif in (True, False):
+                with self.assertRaisesRegex(ValueError, rf'{orientation}.png: .* stored mirrored \(orientation {orientation}\)'):
+                    match_images(self.first, path, cameras=cameras, options=FeatureOptions(points=300, exif=exif))
+
     def test_a_pose_of_turned_images_without_exif(self):
         a, b = self.folder / 'a.png', self.folder / 'b.png'
         cv2.imwrite(str(a), self.a)
@@ -183,7 +192,11 @@ class Commands(Collection):
         for name, orientation in (('b.png', 6), ('more/c.png', 3)):
             image = cv2.imread(str(self.images / name))
             (self.images / name).write_bytes(png(stored(image, orientation), orientation))
-        self.assertEqual(self.build()['verified pairs'], 3)
+        for orientation in MIRRORED:
+            (self.images / f'{orientation}.png').write_bytes(png(stored(image, orientation), orientation))
+        counts = self.build()
+        self.assertEqual((counts['verified pairs'], counts['failed']), (3, 4))
+        self.assertEqual([line.split(' (')[0] for line in self.lines], [f'{orientation}.png: its EXIF data say that it is stored mirrored' for orientation in MIRRORED])
         size = dict(self.query('SELECT name, width FROM images NATURAL JOIN cameras'))
         self.assertEqual(size, {'a.png': 400, 'b.png': 300, 'more/c.png': 400})
 

@@ -45,7 +45,7 @@ set -- "--config-settings=build-dir=$work/build"
 [ -z "$library" ] || cp "$work"/*.whl "$(dirname "$library")"
 
 say "python tests with pip's newest OpenCV"
-check newest "$work"/*.whl opencv-python-headless h5py pycolmap distributed mypy
+check newest "$work"/*.whl opencv-python-headless h5py pycolmap distributed tifffile mypy
 if [ -n "$servers" ]; then
     "$work/newest/bin/pip" install --quiet "psycopg[binary]"
     "$root/scripts/helpers/servers_test.sh" "$work/newest/bin/python"

@@ -10,16 +10,16 @@ import json
 import os
 import pathlib
 import sqlite3
-from typing import Any, Iterator, NoReturn, Optional, Sequence
+from typing import Any, Iterator, Optional, Sequence
 
 import numpy as np
 
 from opencv_iib._files import replaced
 from opencv_iib._images import in_order
+from opencv_iib._partial import open_partial, remove_logs
 
 SCHEMA_VERSION = 3800
 MAX_IMAGE_ID = 2147483647
-LOGS = ('-wal', '-shm', '-journal')  # that SQLite writes beside a database
 
 SCHEMA = '''
 CREATE TABLE IF NOT EXISTS iib_settings (settings TEXT NOT NULL);
@@ -57,16 +57,24 @@ UNCALIBRATED = 3  # COLMAP's TwoViewGeometry::UNCALIBRATED
 class SettingsChanged(ValueError):
     """A database cannot be gone on with: it was begun with other settings or images."""
 
-    def __init__(self, path: str, settings: str) -> None:
-        super().__init__(f'{path} was begun with other settings, {settings}: go on as it was begun, or begin anew with force (--force)')
+    def __init__(self, path: str, differences: str) -> None:
+        """:param differences: names of settings with both values."""
+        super().__init__(f'{path} was begun with other settings ({differences}): go on as it was begun, or begin anew with force (--force)')
 
 
-def settings_of(path: str) -> Optional[str]:
+def check_settings(path: str, old: dict[str, Any], new: dict[str, Any]) -> None:
+    """:raises SettingsChanged: if they differ."""
+    different = [f'{name} {old.get(name)}, now {new.get(name)}' for name in {**old, **new} if old.get(name) != new.get(name)]
+    if different:
+        raise SettingsChanged(path, ', '.join(different))
+
+
+def settings_of(path: str) -> Optional[dict[str, Any]]:
     """What a finished database was made with; None of another file."""
     try:
         with contextlib.closing(sqlite3.connect(f'{pathlib.Path(path).absolute().as_uri()}?mode=ro', uri=True)) as db:
-            return str(db.execute('SELECT settings FROM iib_settings').fetchone()[0])
-    except (sqlite3.Error, TypeError):
+            return dict(json.loads(db.execute('SELECT settings FROM iib_settings').fetchone()[0]))
+    except (sqlite3.Error, TypeError, ValueError):
         return None
 
 
@@ -85,52 +93,35 @@ class Database(contextlib.AbstractContextManager['Database']):
         :raises SettingsChanged: if these had other settings.
         :raises FileExistsError: for a file that no such run has left.
         """
-        self.path, self.partial, self._finished = path, path + '.partial', False
-        if not os.path.exists(self.partial) or not os.path.getsize(self.partial):
-            for log in LOGS:
-                if os.path.lexists(self.partial + log):
-                    self._refuse(log)
+        self.path, self.partial, self.force, self._finished = path, path + '.partial', force, False
         try:
             self._open(settings)
         except SettingsChanged:
             if not force:
                 raise
-            for log in LOGS:
-                with contextlib.suppress(FileNotFoundError):
-                    os.unlink(self.partial + log)
+            remove_logs(self.partial)
             os.truncate(self.partial, 0)  # the same file: it may be locked
             self._open(settings)
         if not force and os.path.exists(path) and not self.stamps():
             self._grow()
 
-    def _refuse(self, log: str = '') -> NoReturn:
-        raise FileExistsError(f'{self.partial}{log} is there and not of an unfinished run: remove it, or give the database another name')
-
     def _open(self, settings: dict[str, Any]) -> None:
-        self._db = sqlite3.connect(os.fsencode(self.partial), isolation_level=None)
+        self._db = open_partial(self.partial, 'iib_settings')
         try:
             self._begin(settings)
-        except Exception as e:
+        except Exception:
             self._db.close()
-            if type(e) is not sqlite3.DatabaseError:  # a full disk is a more special one
-                raise
-            self._refuse()
+            raise
 
     def _begin(self, settings: dict[str, Any]) -> None:
-        tables = {name for name, in self._db.execute('SELECT name FROM sqlite_master')}
-        if tables and 'iib_settings' not in tables:
-            self._refuse()
-        self._db.execute('PRAGMA journal_mode=WAL')
-        self._db.execute('PRAGMA synchronous=NORMAL')
         self._db.executescript(SCHEMA)
         if self._db.execute('PRAGMA user_version').fetchone()[0] == 0:  # not where a newer COLMAP has been at it
             self._db.execute(f'PRAGMA user_version={SCHEMA_VERSION}')
-        text = json.dumps(settings, sort_keys=True)
         row = self._db.execute('SELECT settings FROM iib_settings').fetchone()
         if row is None:
-            self._db.execute('INSERT INTO iib_settings VALUES (?)', (text,))
-        elif row[0] != text:
-            raise SettingsChanged(self.partial, row[0])
+            self._db.execute('INSERT INTO iib_settings VALUES (?)', (json.dumps(settings, sort_keys=True),))
+        else:
+            check_settings(self.partial, json.loads(row[0]), settings)
 
     def _grow(self) -> None:
         """Takes what the finished database holds, but not what a newer COLMAP has made of it when it opened it."""
@@ -147,6 +138,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         useless = self._finished or not self.stamps()
         self._db.close()
         if useless:
+            remove_logs(self.partial)
             os.unlink(self.partial)
 
     def finish(self) -> None:
@@ -174,15 +166,18 @@ class Database(contextlib.AbstractContextManager['Database']):
     def forget(self, name: str) -> None:
         """Removes an image and its pairs."""
         with self._transaction():
-            image, camera = self._db.execute('SELECT image_id, camera_id FROM images WHERE name=?', (name,)).fetchone()
-            self._db.execute('DELETE FROM iib_files WHERE name=?', (name,))
-            for table in ('images', 'keypoints', 'iib_codes'):
-                self._db.execute(f'DELETE FROM {table} WHERE image_id=?', (image,))
-            for table in ('matches', 'two_view_geometries'):
-                self._db.execute(f'DELETE FROM {table} WHERE ? IN (pair_id / {MAX_IMAGE_ID}, pair_id % {MAX_IMAGE_ID})',
-                                 (image,))
-            self._db.execute('DELETE FROM cameras WHERE camera_id=? AND camera_id NOT IN (SELECT camera_id FROM images)',
-                             (camera,))
+            self._remove(name)
+
+    def _remove(self, name: str) -> tuple[Optional[int], Optional[int]]:
+        """:return: numbers that have become free: of the image, and of its camera if no other image has it."""
+        image, camera = self._db.execute('SELECT image_id, camera_id FROM images WHERE name=?', (name,)).fetchone() or (None, None)
+        self._db.execute('DELETE FROM iib_files WHERE name=?', (name,))
+        for table in ('images', 'keypoints', 'iib_codes'):
+            self._db.execute(f'DELETE FROM {table} WHERE image_id=?', (image,))
+        for table in ('matches', 'two_view_geometries'):
+            self._db.execute(f'DELETE FROM {table} WHERE ? IN (pair_id / {MAX_IMAGE_ID}, pair_id % {MAX_IMAGE_ID})', (image,))
+        free = self._db.execute('DELETE FROM cameras WHERE camera_id=? AND camera_id NOT IN (SELECT camera_id FROM images)', (camera,)).rowcount
+        return image, camera if free else None
 
     def image_ids(self) -> dict[str, int]:
         """Numbers of the images by name, in_order."""
@@ -204,7 +199,7 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     def add_image(self, name: str, stamp: str, width: int, height: int, model: str, params: Sequence[float], prior: bool,
                   shared: bool, keypoints: np.ndarray, codes: np.ndarray) -> None:
-        """An image with its camera, keypoints and codes, in one transaction.
+        """An image with its camera, keypoints and codes, in one transaction. One of this name that is there is replaced, and its numbers are kept.
 
         :param stamp: tells whether the file is the same later.
         :param model: one of MODELS.
@@ -214,12 +209,13 @@ class Database(contextlib.AbstractContextManager['Database']):
         """
         values = MODELS.index(model), width, height, np.array(params, np.float64).tobytes(), int(prior)
         with self._transaction():
+            number, free = self._remove(name)
             same = self._db.execute('SELECT camera_id FROM cameras WHERE (model, width, height, params, prior_focal_length) = '
                                     '(?, ?, ?, ?, ?)', values).fetchone() if shared else None
             camera = same[0] if same else self._db.execute(
-                'INSERT INTO cameras (model, width, height, params, prior_focal_length) VALUES (?, ?, ?, ?, ?)',
-                values).lastrowid
-            image = self._db.execute('INSERT INTO images (name, camera_id) VALUES (?, ?)', (name, camera)).lastrowid
+                'INSERT INTO cameras (camera_id, model, width, height, params, prior_focal_length) VALUES (?, ?, ?, ?, ?, ?)',
+                (free, *values)).lastrowid
+            image = self._db.execute('INSERT INTO images (image_id, name, camera_id) VALUES (?, ?, ?)', (number, name, camera)).lastrowid
             self._db.execute('INSERT INTO keypoints VALUES (?, ?, ?, ?)',
                              (image, *keypoints.shape, np.ascontiguousarray(keypoints, np.float32).tobytes()))
             self._db.execute('INSERT INTO iib_codes VALUES (?, ?, ?, ?)', (image, *codes.shape, codes.tobytes()))

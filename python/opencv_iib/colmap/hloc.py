@@ -10,22 +10,18 @@ import numpy as np
 
 from opencv_iib._arguments import InvalidOption, MissingFile, Path
 from opencv_iib._files import check_outputs, output_file, replaced
+from opencv_iib._hdf5 import new_hdf5
 from opencv_iib._images import is_listable
+from opencv_iib._pairs import pair_name
 from opencv_iib.colmap.database import MAX_IMAGE_ID
 
 SHORT = 2 ** 15 - 1  # hloc's own files hold int16; its readers take any integers
 
 
-def pair_name(a: str, b: str) -> str:
-    """Of a pair of images, in hloc's files."""
-    return '/'.join(name.replace('/', '-') for name in (a, b))
-
-
 def _write_features(connection: sqlite3.Connection, path: str) -> tuple[dict[int, str], dict[int, int]]:
     """:return: names of the images, and how many keypoints they have, by number."""
-    import h5py  # type: ignore[import-untyped,unused-ignore]
     names, counts = {}, {}
-    with h5py.File(path, 'w') as file:
+    with new_hdf5(path) as file:
         for number, name, width, height in connection.execute(
                 'SELECT image_id, name, width, height FROM images NATURAL JOIN cameras'):
             rows, cols, data = connection.execute('SELECT rows, cols, data FROM keypoints WHERE image_id=?',
@@ -44,11 +40,10 @@ def _write_features(connection: sqlite3.Connection, path: str) -> tuple[dict[int
 def _write_matches(connection: sqlite3.Connection, path: str, pairs: str, names: dict[int, str], counts: dict[int, int]
                    ) -> int:
     """:return: number of pairs."""
-    import h5py
     verified = connection.execute('SELECT COUNT(*) FROM two_view_geometries').fetchone()[0]  # of refused pairs too
     table = 'two_view_geometries' if verified else 'matches'
     total = 0
-    with h5py.File(path, 'w') as file, open(pairs, 'w', encoding='utf-8') as listing:
+    with new_hdf5(path) as file, open(pairs, 'w', encoding='utf-8') as listing:
         for key, data in connection.execute(f'SELECT pair_id, data FROM {table} WHERE rows > 0'):
             a, b = divmod(key, MAX_IMAGE_ID)
             found = np.frombuffer(data, np.uint32).reshape(-1, 2)

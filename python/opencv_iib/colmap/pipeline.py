@@ -3,26 +3,27 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import json
 import os
+import posixpath
 import socket
 from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
 
 import numpy as np
 
 import opencv_iib
+from opencv_iib import _pairs as pair_lists
 from opencv_iib._arguments import InvalidOption, Path, integer, number, sequence
-from opencv_iib._exif import exif_focal_length, exif_orientation, gps_place
+from opencv_iib._camera import Camera
+from opencv_iib._exif import exif_focal_length, gps_place, orientation_of_photograph
 from opencv_iib._files import check_is_folder, check_outputs, only_writer, output_file, read_bytes
-from opencv_iib._images import Masks, decode_grey, find_images, import_cv2, is_listable, is_utf8
+from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, is_listable, is_utf8
 from opencv_iib._parallel import Cluster, Crew, Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
-from opencv_iib.colmap import pairs as pair_lists
-from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged, settings_of
-from opencv_iib.colmap.verify import colmap_binary, magsac, matches_importer
+from opencv_iib._two_views import magsac
+from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged, check_settings, settings_of
+from opencv_iib.colmap.verify import colmap_binary, matches_importer
 from opencv_iib.features import FeatureOptions, Features, to_colmap
-from opencv_iib.localization.localizer import Camera
 from opencv_iib.matcher import HierarchicalMatcher
 
 PAIRS = ('exhaustive', 'sequential', 'retrieval', 'gps')
@@ -55,9 +56,17 @@ class Options:
 
         :raises opencv_iib.error: for one that is none."""
         given = [('', self.camera)] if self.camera is not None else []
-        given += [(folder.strip('/') + '/', camera) for folder, _, camera in (text.rpartition('=') for text in self.camera_of)]
-        inside = [(folder, camera) for folder, camera in given if name.startswith(folder)]
+        inside = [(folder, camera) for folder, camera in given + self._cameras_of() if name.startswith(folder)]
         return Camera.parse(max(inside)[1]) if inside else None
+
+    def _cameras_of(self) -> list[tuple[str, str]]:
+        return [(posixpath.normpath(folder).strip('/') + '/', camera) for folder, _, camera in (text.rpartition('=') for text in self.camera_of)]
+
+    def _settings(self) -> dict[str, Any]:
+        """What a database depends on, with one text for each meaning. Masks are known by the files of the images."""
+        cameras = sorted(f'{folder}={Camera.parse(camera)}' for folder, camera in self._cameras_of())
+        return {**vars(self), **vars(self.features), 'features': None, 'mask': None, 'pairs': os.path.basename(self.pairs),
+                'camera': self.camera and str(Camera.parse(self.camera)), 'camera_of': cameras}
 
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
@@ -69,6 +78,10 @@ class Options:
         for text in sequence(self.camera_of, 'camera_of', "'FOLDER=MODEL,WIDTH,HEIGHT,PARAMS'"):
             if '=' not in str(text):
                 raise InvalidOption(f'camera_of is {text}: it must be FOLDER=MODEL,WIDTH,HEIGHT,PARAMS')
+        folders = [folder for folder, _ in self._cameras_of()]
+        for folder in folders:
+            if folders.count(folder) > 1:
+                raise InvalidOption(f'camera_of has two cameras of {folder}: give one')
         for camera in [*(text.rpartition('=')[2] for text in self.camera_of), *([] if self.camera is None else [self.camera])]:
             try:
                 Camera.parse(camera)
@@ -103,7 +116,7 @@ def describe_image(folder: str, options: Options, name: str
         raise ValueError('its name is not UTF-8')
     data = read_bytes(os.path.join(folder, name))
     image = decode_grey(data)
-    rows, codes = _features(options.features)(image, exif_orientation(data) if options.features.exif else 1,
+    rows, codes = _features(options.features)(image, orientation_of_photograph(data, options.features.exif),
                                               Masks(options.features.mask).of(name, image))
     height, width = image.shape
     camera = options.camera_for(name)
@@ -119,20 +132,21 @@ def describe_image(folder: str, options: Options, name: str
 
 def describe_images(database: Database, folder: str, names: Sequence[str], options: Options, crew: Crew,
                     log: Callable[[str], None]) -> int:
-    """Describes the images that the database does not know, and removes those that were changed or are gone.
+    """Describes the images that the database does not know or that were changed, and removes those that are gone or broken.
 
     :param names: of images in the folder.
     :return: how many are broken; each is a line in `log`.
     """
     masks = Masks(options.features.mask)
     stamps = {name: masks.stamp(os.path.join(folder, name), name) for name in names}
-    for name, known in database.stamps().items():
-        if stamps.get(name) != known:
-            database.forget(name)
     done = database.stamps()
-    missing = [name for name in stamps if name not in done]
+    missing = [name for name in stamps if done.get(name) != stamps[name]]
+    if done and len(missing) == len(stamps) and not database.force:
+        raise SettingsChanged(database.path, f'other images, none of which is in {folder}')
+    for name in done.keys() - stamps.keys():
+        database.forget(name)
     failed = 0
-    progress = Progress('describing', len(stamps), len(done))
+    progress = Progress('describing', len(stamps), len(stamps) - len(missing))
     describe = functools.partial(describe_image, os.path.abspath(folder), options)
     for name, result in in_parallel(describe, missing, crew):
         if isinstance(result, (FileNotFoundError, ImportError)):
@@ -141,6 +155,8 @@ def describe_images(database: Database, folder: str, names: Sequence[str], optio
             reason = str(result).splitlines()[0] if str(result) else type(result).__name__
             failed += 1
             log(f'{name}: {reason}')
+            if name in done:
+                database.forget(name)
         else:
             keypoints, codes, width, height, model, params, prior = result
             shared = options.share_cameras or options.camera_for(name) is not None
@@ -189,7 +205,7 @@ def list_pairs(database: Database, folder: str, names: Iterable[str], options: O
         places = [gps_place(os.path.join(folder, name)) for name in numbers]
         chosen, total = pair_lists.distinct(pair_lists.nearest(places, options.neighbours)), None
     else:
-        return pair_lists.distinct(pair_lists.from_file(options.pairs, {**dict.fromkeys(names), **numbers})), None
+        return pair_lists.distinct(pair_lists.read_list(options.pairs, {**dict.fromkeys(names), **numbers})[0]), None
     return ((ids[a], ids[b]) for a, b in chosen), total
 
 
@@ -280,12 +296,12 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     options.check()
     images, database = os.fspath(images), output_file(os.fspath(database))
     check_is_folder(images)
-    names = find_images(images)
+    names = find_images(images, log)
     if not names:
         raise ValueError(f'no images below {images}')
+    left_out = 0  # lines
     if options.pairs not in PAIRS:
-        for _ in pair_lists.from_file(options.pairs, dict.fromkeys(names)):
-            pass  # a mistake in it is told before work begins
+        left_out = pair_lists.check_list(options.pairs, {name: number for number, name in enumerate(names)}, log)[1]
     if options.pairs == 'gps' and all(gps_place(os.path.join(images, name)) is None for name in names):
         raise ValueError(f'no image below {images} has a place by GPS in its EXIF data')
     verify = options.verify
@@ -296,20 +312,21 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     if unlistable:
         raise ValueError(f'{unlistable[0]}: matches_importer reads no names with blanks or a leading #; rename it, or '
                          'verify by magsac (--verify)')
-    for text in options.camera_of:
-        below = text.rpartition('=')[0].strip('/') + '/'
-        if not any(name.startswith(below) for name in names):
-            raise InvalidOption(f'camera_of is {text}: no image is below {os.path.join(images, below)}')
-    lists = [] if options.pairs in PAIRS else [options.pairs]
-    check_outputs([database], [*lists, *(os.path.join(images, name) for name in names), *Masks(options.features.mask).check(names)])
-    settings = {**dataclasses.asdict(options), 'verify': verify, 'images': os.path.abspath(images),
-                'version': opencv_iib.__version__}
-    if os.path.exists(database):
-        made = None if force else settings_of(database)
-        if made is None and not force:
+    for folder, _ in options._cameras_of():
+        if not any(name.startswith(folder) for name in names):
+            raise InvalidOption(f'camera_of is {folder}: no image is below {os.path.join(images, folder)}')
+    lists, masks = [] if options.pairs in PAIRS else [options.pairs], Masks(options.features.mask)
+    check_outputs([database], [*lists, *(os.path.join(images, name) for name in names), *masks.check(names)])
+    check_sizes(images, names, masks, None)
+    cameras = {name: options.camera_for(name) for name in names}
+    for camera in dict.fromkeys(filter(None, cameras.values())):
+        check_sizes(images, [name for name in names if cameras[name] == camera], Masks(None), camera)
+    settings = {**options._settings(), 'verify': verify, 'version': opencv_iib.__version__}
+    if os.path.exists(database) and not force:
+        made = settings_of(database)
+        if made is None:
             raise FileExistsError(f'{database} is there already, and not of this command: remove it, or pass force (--force)')
-        if made is not None and json.loads(made) != json.loads(json.dumps(settings)):
-            raise SettingsChanged(database, made)
+        check_settings(database, made, settings)
     sizes = _features(options.features).level_sizes()  # raises for a detector that cv2 lacks
     with only_writer(database + '.partial'), Database(database, settings, force) as target:
         failed = describe_images(target, images, names, options, crew, log)
@@ -318,6 +335,6 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
         describe_again(target, images, names, options, sizes, crew)
         match_pairs(target, list_pairs(target, images, names, options, sizes), options.ratio, sizes, verify, crew)
         verify_pairs(target, binary, log)
-        counts = {**target.counts(), 'failed': failed}
+        counts = {**target.counts(), 'failed': failed, **({'lines left out': left_out} if left_out else {})}
         target.finish()
     return counts

@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import InvalidOption, Path, integer
 from opencv_iib._arrays import as_mask
-from opencv_iib._exif import exif_orientation
-from opencv_iib._files import check_folder, check_is_folder, read_bytes
+from opencv_iib._exif import orientation_of_photograph
+from opencv_iib._files import OF_FILE_MANAGERS, check_folder, check_is_folder, read_bytes
 from opencv_iib._images import Masks, decode_grey, in_order
 from opencv_iib._parallel import thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib.features import MAX_POINTS, check_max_size
 from opencv_iib.localization.localizer import AnyCamera, Camera, Location
-from opencv_iib.localization.run import at_size, images_of, locate
+from opencv_iib.localization.run import images_of, locate
 
 
 LEFT_OUT = ': left out of the map'
@@ -35,7 +35,7 @@ def _count(file: str) -> int:
 
 def _check_new(out: Path, force: bool) -> None:
     check_folder(out)
-    if os.path.isdir(out) and os.listdir(out) and not force:
+    if os.path.isdir(out) and not OF_FILE_MANAGERS.issuperset(os.listdir(out)) and not force:
         raise FileExistsError(f'{out} is there already: choose another folder, or pass force (--force) to replace a map')
 
 
@@ -85,7 +85,7 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
         try:
             data = read_bytes(os.path.join(images, os.fsdecode(name)))
             image = decode_grey(data)
-            found = image, exif_orientation(data) if exif else 1, as_mask(masks.of(os.fsdecode(name), image))
+            found = image, orientation_of_photograph(data, exif), as_mask(masks.of(os.fsdecode(name), image))
             read_any = True
             return found
         except (ValueError, OSError) as e:
@@ -148,14 +148,13 @@ def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Opt
     check_is_folder(map)
     if out is not None:
         _check_new(out, force)
-    names = images_of(images)
+    names = images_of(images, log=log)
     changed = _core.MapUpdate(os.path.realpath(map), '' if out is None else os.path.realpath(out))
 
     def add(name: str, image: NDArray[np.uint8], camera: Camera, orientation: int, mask: Optional[NDArray[np.uint8]]) -> Location:
-        return at_size(max_size, lambda image, camera, mask: Location._of(changed.add(name, image, camera, orientation, as_mask(mask))),
-                       image, camera, mask)
+        return Location._of(changed.add(name, image, camera, orientation, as_mask(mask)))
 
-    for name, own, location in locate(add, changed.cameras(), images, names, camera, workers, log, exif, mask):
+    for name, own, location in locate(add, changed.cameras(), images, names, camera, workers, log, exif, mask, max_size):
         if own is None or location.reason:
             log(f'{name}: {location if own is None else location.reason}')
     localized, added, dropped = changed.commit()

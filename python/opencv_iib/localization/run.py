@@ -15,18 +15,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core, error
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._exif import exif_focal_length, exif_orientation
-from opencv_iib._files import check_folder, check_is_folder, check_outputs, new_results, plan, read_bytes, write_whole
+from opencv_iib._exif import exif_focal_length, orientation_of_photograph
+from opencv_iib._files import check_folder, check_is_folder, check_outputs, new_results, read_bytes, write_whole
 from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, is_utf8, read_grey, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import is_open_file, note
+from opencv_iib._upright import BACK
 from opencv_iib.features import check_max_size, reduced, resized_mask
 from opencv_iib.localization.imu_file import by_time, read_imu
 from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Location, as_camera
 from opencv_iib.localization.smoothing import smooth_poses
 
-WRITTEN = ('frames.csv', 'trajectory.txt', 'cameras.bin', 'images.bin', 'points3D.bin')  #: beside pictures
 SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly, and COLMAP of a camera an image
 POSE = ('tx', 'ty', 'tz', 'qx', 'qy', 'qz', 'qw')  # the camera's centre, and camera to world
 FRAME = ('name', 'found', 'reason', 'matches', 'inliers')  # with which frames.csv begins
@@ -34,7 +34,6 @@ AXES = ('x', 'y', 'z', 'rx', 'ry', 'rz')
 
 #: What finds an image: its name, pixels as its file has them, camera, EXIF's orientation and mask.
 Find = Callable[[str, NDArray[np.uint8], Camera, int, Optional[NDArray[np.uint8]]], Location]
-BACK = {6: 8, 8: 6}  # orientations that turn back what these turn upright
 
 
 def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = (), orientation: int = 1) -> Camera:
@@ -46,7 +45,7 @@ def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = 
     :param orientation: of the image, by EXIF: a map's cameras are of upright images.
     :raises ValueError: if there is none.
     """
-    known = [*known, *(camera.upright(BACK[orientation]) for camera in known if orientation in BACK)]
+    known = [*known, *(camera.upright(BACK[orientation]) for camera in known if orientation in (6, 8))]
     focal = exif_focal_length(data, width, height)
     same = tuple(camera for camera in known if (camera.width, camera.height) == (width, height))
     common = _common_camera(same)
@@ -74,12 +73,19 @@ def _common_camera(cameras: tuple[Camera, ...]) -> Optional[Camera]:
     return middle
 
 
-def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], exif: bool, masks: Masks, name: str
+def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], exif: bool, masks: Masks, max_size: int, name: str
             ) -> tuple[Camera, Location]:
+    """An image's camera, and what `find` finds in it, reduced to this longer side if it is larger; pixels are its own."""
     data = read_bytes(os.path.join(folder, name))
-    grey, orientation = decode_grey(data), exif_orientation(data) if exif else 1
+    grey, orientation = decode_grey(data), orientation_of_photograph(data, exif)
     own = camera or find_camera(data, grey.shape[1], grey.shape[0], known, orientation)
-    return own, find(name, grey, own, orientation, masks.of(name if folder else os.path.basename(name), grey))
+    mask, small = masks.of(name if folder else os.path.basename(name), grey), reduced(grey, max_size)
+    if small is grey:
+        return own, find(name, grey, own, orientation, mask)
+    size = np.array(small.shape[1::-1])
+    found = find(name, small, own.resized(*size), orientation, None if mask is None else resized_mask(mask, small))
+    pixels = (found.pixels + .5) * (np.array(grey.shape[1::-1]) / size) - .5  # the centre of the first one is 0
+    return own, Location(found.cam_from_world, found.covariance, found.reason, found.matches, found.inliers, pixels, found.points)
 
 
 def _camera_reporter(cameras: Sequence[Camera], log: Callable[[str], None]) -> Callable[[Camera], None]:
@@ -95,7 +101,8 @@ def _camera_reporter(cameras: Sequence[Camera], log: Callable[[str], None]) -> C
 
 
 def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence[str], camera: Optional[AnyCamera],
-           workers: Optional[int], log: Callable[[str], None], exif: bool, mask: Optional[Path] = None) -> Iterator[tuple[str, Optional[Camera], Any]]:
+           workers: Optional[int], log: Callable[[str], None], exif: bool, mask: Optional[Path] = None, max_size: int = 0
+           ) -> Iterator[tuple[str, Optional[Camera], Any]]:
     """Of each image in order its name, its camera and Location; None and what is wrong if it cannot be read or has no camera.
 
     :param find: threads call it.
@@ -112,7 +119,7 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
 
     def job(name: str) -> tuple[Camera, Location]:
         check_name(name)
-        return _locate(find, cameras, folder, given, exif, masks, name)
+        return _locate(find, cameras, folder, given, exif, masks, max_size, name)
 
     for name, result in in_parallel(job, names, Threads(thread_count(workers))):
         if isinstance(result, Exception) and not isinstance(result, (ValueError, OSError, error)):
@@ -125,14 +132,14 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
     progress.close()
 
 
-def images_of(folder: Path, out: Path = '') -> list[str]:
+def images_of(folder: Path, out: Path = '', log: Callable[[str], None] = note) -> list[str]:
     """Names of the images below a folder, but for those in `out`, where results are.
 
     :raises ValueError: if there are none.
     """
     check_is_folder(folder)
     inside = os.path.relpath(os.path.realpath(out), os.path.realpath(folder)).replace(os.sep, '/') if out else '..'
-    names = [name for name in find_images(folder) if not name.startswith(inside + '/')]
+    names = [name for name in find_images(folder, log) if not name.startswith(inside + '/')]
     if not names:
         raise ValueError(f'no images below {folder}')
     return names
@@ -176,18 +183,6 @@ def _numbers(cam_from_world: NDArray[np.float64]) -> list[str]:
     return [repr(value) for value in _place_and_turn(cam_from_world)]
 
 
-def at_size(max_size: int, find: Callable[..., Location], image: NDArray[np.uint8], camera: Camera, mask: Optional[NDArray[np.uint8]]
-            ) -> Location:
-    """What `find` finds in an image, with its camera and mask, that is reduced to this longer side if it is larger; pixels are its own."""
-    small = reduced(image, max_size)
-    if small is image:
-        return find(image, camera, mask)
-    size = np.array(small.shape[1::-1])
-    found = find(small, camera.resized(*size), None if mask is None else resized_mask(mask, small))
-    pixels = (found.pixels + .5) * (np.array(image.shape[1::-1]) / size) - .5  # the centre of the first one is 0
-    return Location(found.cam_from_world, found.covariance, found.reason, found.matches, found.inliers, pixels, found.points)
-
-
 def _localizer(map: Path, points: int, lines: bool) -> Localizer:
     """:raises InvalidOption: for no folder, lines of a map without them, or where OpenCV finds none."""
     check_is_folder(map)
@@ -197,16 +192,6 @@ def _localizer(map: Path, points: int, lines: bool) -> Localizer:
         if re.search("the map has no lines|lines need OpenCV's module", str(e)):
             raise InvalidOption(str(e)) from None
         raise
-
-
-def _finder(localizer: Localizer, max_size: int) -> Callable[..., Location]:
-    """Localizer.localize, of larger images reduced to that longer side."""
-    check_max_size(max_size)
-
-    def find(image: NDArray[np.uint8], camera: Camera, prior: Optional[NDArray[np.float64]], orientation: int, mask: Optional[NDArray[np.uint8]]
-             ) -> Location:
-        return at_size(max_size, lambda image, camera, mask: localizer.localize(image, camera, prior, orientation, mask), image, camera, mask)
-    return find
 
 
 def localize_stream(map: Path, paths: Iterable[str], camera: Optional[AnyCamera] = None, lines: bool = False,
@@ -219,15 +204,17 @@ def localize_stream(map: Path, paths: Iterable[str], camera: Optional[AnyCamera]
     :param log: told of cameras that were taken for others.
     :return: of each image a line, ``PATH tx ty tz qx qy qz qw`` or ``# PATH: why there is no pose``, and whether there is one.
     """
+    check_max_size(max_size)
     localizer, masks = _localizer(map, 1000, lines), Masks(mask)
-    find, known, given, last = _finder(localizer, max_size), localizer.cameras, None if camera is None else as_camera(camera), None
+    known, given, last = localizer.cameras, None if camera is None else as_camera(camera), None
     report_camera = _camera_reporter(known, log)
     for path in paths:
         path = path.rstrip('\r\n')
         try:
             if path.startswith('#'):  # would look like a failure
                 raise ValueError('a path must not begin with #: write ./ before it')
-            own, location = _locate(lambda name, image, own, *more: find(image, own, last, *more), known, '', given, exif, masks, path)
+            own, location = _locate(lambda name, image, own, *more: localizer.localize(image, own, last, *more), known, '', given, exif, masks, max_size,
+                                    path)
             if given is None:
                 report_camera(own)
             last, problem = location.cam_from_world, location.reason
@@ -260,7 +247,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     """
     workers, out = thread_count(workers), os.fspath(out)
     table_alone = out.lower().endswith('.csv') or is_open_file(out)
-    names, times, readings = images_of(images, '' if table_alone else out), {}, None
+    names, times, readings = images_of(images, '' if table_alone else out, log), {}, None
     if sequence:
         workers = 1
     if table_alone:
@@ -270,7 +257,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     if table_alone:
         check_outputs([out], read)
     else:
-        check_folder(out, read)
+        check_folder(out, read, ', X.csv and -')
     if imu is not None:
         readings = read_imu(os.fspath(imu))
         times = by_time(names, readings)
@@ -285,15 +272,12 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
 
     def find_next(name: str, image: NDArray[np.uint8], camera: Camera, *more: Any) -> Location:
         nonlocal last
-        location = find(image, camera, last, *more)
+        location = localizer.localize(image, camera, last, *more)
         last = location.cam_from_world if sequence else None
         return location
     with contextlib.nullcontext('') if table_alone else new_results(out, 'localize') as part:
-        if part:
-            plan(part, [*WRITTEN, *(f'matches/{label}.png' for label in labels.values())])
         localizer = _localizer(map, 0, lines)
-        find = _finder(localizer, max_size)
-        for name, own, location in locate(find_next, localizer.cameras, images, names, given, workers, log, exif, mask):
+        for name, own, location in locate(find_next, localizer.cameras, images, names, given, workers, log, exif, mask, max_size):
             location = Location(reason=location) if own is None else location
             row = [name, int(location.found), location.reason, location.matches, location.inliers]
             if own is not None and location.covariance is not None:

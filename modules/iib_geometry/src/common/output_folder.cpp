@@ -8,6 +8,13 @@ namespace cv::iib {
 
 namespace fs = std::filesystem;
 
+//! Whether it is one that file managers write into the folders that they show.
+static bool isOfFileManager(const fs::path& path)
+{
+    const fs::path name = path.filename();
+    return name == ".DS_Store" || name == "Thumbs.db" || name == "desktop.ini";
+}
+
 OutputFolder::OutputFolder(const std::string& folder, const std::function<bool(const std::string&)>& isOwn)
 {
     const size_t end = checkedName(folder).find_last_not_of('/');  // with a slash a link is its folder
@@ -24,7 +31,8 @@ OutputFolder::OutputFolder(const std::string& folder, const std::function<bool(c
             entry.increment(error))
     {
         const std::string name = entry->path().lexically_relative(path).generic_u8string();
-        if ((entry->is_symlink(unknown) || !entry->is_directory(unknown)) && !isOwn(name))
+        if ((entry->is_symlink(unknown) || !entry->is_directory(unknown)) &&
+                !isOfFileManager(entry->path()) && !isOwn(name))
             CV_Error(Error::StsError,
                     folder + " holds " + name + ", which is of no earlier run: choose another folder");
     }

@@ -96,6 +96,7 @@ std::string problemOf(const Photograph& photograph, const Size& size)
     try
     {
         checkPhotograph(photograph.pixels, photograph.mask, size);
+        const Upright checked(size, photograph.orientation);
     }
     catch (const Exception& e)
     {

@@ -30,8 +30,11 @@ Upright::Upright(const Size& size, int orientation)
         fromStored_ = Matx33d(0, -1, 0, 1, 0, 0, 0, 0, 1);
     else if (orientation == 8)
         fromStored_ = Matx33d(0, 1, 0, -1, 0, 0, 0, 0, 1);
-    else
-        orientation_ = 1;
+    else if (orientation != 1)
+        CV_Error(Error::StsBadArg, format("orientation is %d, of an image that is stored mirrored, and no "
+                                          "camera sees one: flip it "
+                                          "first, and give 1, 3, 6 or 8",
+                                           orientation));
 }
 
 Mat Upright::image(const Mat& stored) const

@@ -10,7 +10,8 @@ class Upright
 {
 public:
     /** @param size of the image in its file.
-    @param orientation 1 to 8; of a mirrored image, which no camera sees, as if it were 1. */
+    @param orientation 1, 3, 6 or 8.
+    @throws cv::Exception (StsBadArg) for another one: no camera sees a mirrored image. */
     Upright(const Size& size, int orientation);
 
     Mat image(const Mat& stored) const;

@@ -60,7 +60,11 @@ TEST_F(Localization, of_files_that_store_the_image_turned)
         ASSERT_TRUE(turned.found) << turned.reason;
         EXPECT_LT(cv::norm(inverse(turned.cameraFromWorld).translation() - TRUTH.translation()), 0.01);
     }
-    EXPECT_NE("", messageOf([&] { localizer.localize(image, CAMERA, nullptr, 9); }));
+    for (int orientation : {2, 4, 5, 7, 9})  // mirrored, and none
+    {
+        EXPECT_NE("", messageOf([&] { localizer.localize(image, CAMERA, nullptr, orientation); }));
+        EXPECT_NE("", messageOf([&] { CAMERA.upright(orientation); }));
+    }
 }
 
 cv::Affine3d rolled(const cv::Affine3d& worldFromCamera, double degrees)

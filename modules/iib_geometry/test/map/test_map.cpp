@@ -188,7 +188,9 @@ TEST_F(SmallMap, folders_that_are_no_maps)
         std::filesystem::remove(name + "/" + mine);
     }
     folder.write("map/map.iib.1-0.tmp", "of a killed process");
+    folder.write("map/.DS_Store", "of a file manager");
     write(smallMap());
+    std::filesystem::remove(name + "/.DS_Store");
     EXPECT_EQ("", error()) << "is replaced";
     EXPECT_FALSE(cv::utils::fs::exists(name + "/map.iib.1-0.tmp"));
     EXPECT_TRUE(cv::utils::fs::exists(name + "/points3D.bin"));

@@ -53,8 +53,9 @@ struct CV_EXPORTS Camera
     @throws cv::Exception as project(), and for a size of another shape or without pixels. */
     Camera resized(const Size& to) const;
 
-    /** @brief The camera of images that were turned upright, as EXIF's orientation asks, 1 to 8; of mirrored ones itself.
-    @throws cv::Exception (StsBadArg) for another orientation. */
+    /** @brief The camera of images that were turned upright, as EXIF's orientation asks.
+    @param orientation 1, 3, 6 or 8.
+    @throws cv::Exception (StsBadArg) for another orientation: no camera sees a mirrored image. */
     Camera upright(int orientation) const;
 };
 
@@ -82,7 +83,7 @@ CV_EXPORTS void writeModel(const std::string& folder, const std::vector<PosedIma
 struct Photograph
 {
     Mat pixels;           //!< 8-bit, grey or BGR; empty for one that cannot be read
-    int orientation = 1;  //!< by EXIF, 1 to 8: points are described upright
+    int orientation = 1;  //!< by EXIF, 1, 3, 6 or 8: points are described upright
     Mat mask;             //!< CV_8UC1 of the same size, 0 where no points are to be found, or empty
 
     Photograph() = default;

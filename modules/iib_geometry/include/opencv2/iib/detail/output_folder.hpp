@@ -19,7 +19,8 @@ class CV_EXPORTS OutputFolder
 {
 public:
     /** Makes the folder if it is missing. A link is followed, also if nothing is at its end yet.
-    @param isOwn whether a file may be there, by its name relative to the folder: of earlier results. Empty folders may.
+    @param isOwn whether a file may be there, by its name relative to the folder: of earlier results. Empty folders may, and .DS_Store,
+    Thumbs.db and desktop.ini, which file managers write.
     @throws cv::Exception if it holds anything else, cannot be written, or is being written by another process. */
     OutputFolder(const std::string& folder, const std::function<bool(const std::string&)>& isOwn);
     //! Removes the folder if it was made here and is empty.

@@ -3,17 +3,23 @@ from __future__ import annotations
 
 import itertools
 import os
+import posixpath
 import re
-from typing import Callable, Iterable, Iterator, Mapping, Optional, Sequence
+from typing import Callable, Container, Iterable, Iterator, Mapping, Optional, Sequence
 
 import numpy as np
 
-from opencv_iib._arguments import MissingFile, Path
+from opencv_iib._arguments import InvalidOption, MissingFile, Path
 from opencv_iib._images import is_utf8
 from opencv_iib.matcher import HierarchicalMatcher
 
 Pair = tuple[int, int]
 BLOCK = 50  # images of a block: the codes of two blocks are held while its pairs are matched
+
+
+def pair_name(a: str, b: str) -> str:
+    """Of a pair of images, in hloc's files."""
+    return '/'.join(name.replace('/', '-') for name in (a, b))
 
 
 def exhaustive(count: int, block: int = BLOCK) -> Iterator[Pair]:
@@ -54,34 +60,74 @@ def sequential(count: int, overlap: int) -> Iterator[Pair]:
 
 
 def nearest(places: Sequence[Optional[np.ndarray]], neighbours: int) -> Iterator[Pair]:
-    """Each image with those nearest to it; images without a place are in no pair."""
+    """Each image with those nearest to it; images without a place are in no pair. A coordinate that one of two lacks (NaN) does not count."""
     placed = [i for i, place in enumerate(places) if place is not None]
     known = np.array([places[i] for i in placed], float)
     for a, place in zip(placed, known):
-        for b in np.argsort(np.linalg.norm(known - place, axis=1), kind='stable')[:neighbours + 1]:
+        for b in np.argsort(np.linalg.norm(np.nan_to_num(known - place), axis=1), kind='stable')[:neighbours + 1]:
             if placed[b] != a:
                 yield a, placed[b]
 
 
-def from_file(path: Path, numbers: Mapping[str, Optional[int]]) -> Iterator[Pair]:
-    """Pairs of a text file with two names a line, as COLMAP and hloc write them; '#' begins a line of comment.
+def read_list(path: Path, numbers: Mapping[str, Optional[int]]) -> tuple[list[Pair], list[str]]:
+    """Pairs of a text file with two names a line, as COLMAP and hloc write them, and why other lines are none; '#' begins a line of comment.
+
+    Names may be in quotes, begin with ./ and have \\ for /; a comma may be between them, a score behind.
 
     :param numbers: of the images by name; None for those that could not be described, whose pairs are left out.
-    :raises ValueError: naming file and line, for a line that is not the names of two images.
+    :raises ValueError: for a file that is not UTF-8.
     :raises MissingFile: if the file is not there.
     """
     if not os.path.exists(path):
         raise MissingFile(f'there is no list of pairs {os.fspath(path)}')
+    pairs, wrong = [], []
     with open(path, encoding='utf-8-sig', errors='surrogateescape') as file:
         for number, line in enumerate(map(str.strip, file), 1):
+            place = f'{os.fspath(path)}:{number}'
             if not is_utf8(line):
-                raise ValueError(f'{os.fspath(path)}:{number}: not UTF-8')
-            cuts = ((line[:blank.start()], line[blank.end():]) for blank in re.finditer(r'\s+', line))  # names may have blanks
-            a, b = next((cut for cut in cuts if numbers.keys() >= set(cut)), ('', ''))
-            if a and a != b and None not in (numbers[a], numbers[b]):
-                yield numbers[a], numbers[b]  # type: ignore[misc]
-            elif not a and line and not line.startswith('#'):
-                raise ValueError(f'{os.fspath(path)}:{number}: not the names of two images')
+                raise ValueError(f'{place}: not UTF-8')
+            names = _names(line, numbers)
+            unknown = [name for name in names if name not in numbers]
+            if names and not unknown and names[0] != names[1]:
+                a, b = (numbers[name] for name in names)
+                if a is not None and b is not None:
+                    pairs.append((a, b))
+            elif line and not line.startswith('#'):
+                wrong.append(f'{place}: ' + ('not the names of two images' if not names else f'{names[0]} is paired with itself' if not unknown
+                                             else f'no image is called {" or ".join(unknown)}'))
+    return pairs, wrong
+
+
+def check_list(path: Path, numbers: Mapping[str, Optional[int]], log: Callable[[str], None]) -> tuple[list[Pair], int]:
+    """As read_list, but the lines that are left out are counted.
+
+    :param log: gets each of them.
+    :raises InvalidOption: for a list without pairs.
+    """
+    pairs, wrong = read_list(path, numbers)
+    if not pairs:
+        raise InvalidOption(wrong[0] if wrong else f'{os.fspath(path)} has no pair of images')
+    for text in wrong:
+        log(text)
+    return pairs, len(wrong)
+
+
+SEPARATOR = r'\s*[,;]\s*|\s+'
+
+
+def _names(line: str, known: Container[str]) -> list[str]:
+    """Two names of a line, known ones if it can be cut into these; none of a line that is not of two words."""
+    def name(text: str) -> str:
+        return text if text in known else posixpath.normpath(text.strip('"\'').replace('\\', '/'))
+
+    alone = re.sub(r'([\s,;]+[-+]?[\d.]+(e[-+]?\d+)?)+$', '', line)  # without a score
+    for text in (line, alone):
+        for cut in re.finditer(SEPARATOR, text):  # names may have blanks
+            found = [name(text[:cut.start()]), name(text[cut.end():])]
+            if found[0] in known and found[1] in known:
+                return found
+    words = re.split(SEPARATOR, alone)
+    return [name(word) for word in words] if len(words) == 2 else []
 
 
 def retrieval(count: int, load: Callable[[int], np.ndarray], level_sizes: Sequence[int], neighbours: int,

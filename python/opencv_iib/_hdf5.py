@@ -1,0 +1,54 @@
+"""HDF5 files on a disk that may be full."""
+from __future__ import annotations
+
+import contextlib
+import io
+from typing import Any, Iterator, Optional
+
+
+def import_h5py() -> Any:
+    """:raises ImportError: saying what to install."""
+    try:
+        import h5py  # type: ignore[import-untyped,unused-ignore]
+    except ImportError as e:
+        raise ImportError(f'{e}: HDF5 files need pip install h5py') from None
+    return h5py
+
+
+@contextlib.contextmanager
+def new_hdf5(path: str) -> Iterator[Any]:
+    """An h5py.File to write; what is at the path is lost. :raises OSError: for a full disk too."""
+    with _Disk(path, 'w+') as disk:
+        try:
+            with import_h5py().File(disk, 'w') as made:
+                yield made
+        except (OSError, RuntimeError, ValueError):
+            if disk.error is None:
+                raise
+        if disk.error is not None:
+            raise OSError(f'{path} cannot be written: {disk.error.strerror}')
+
+
+class _Disk(io.FileIO):
+    """The file that HDF5 writes to. HDF5 crashes where it cannot write: it gets no error, and what follows the first one is lost."""
+
+    error: Optional[OSError] = None
+
+    def write(self, data: Any) -> int:
+        rest = memoryview(data).cast('B')
+        with self._noted():
+            while len(rest) and self.error is None:
+                rest = rest[super().write(rest):]
+        return len(data)
+
+    def truncate(self, size: Optional[int] = None) -> int:
+        with self._noted():
+            super().truncate(size)
+        return size or 0
+
+    @contextlib.contextmanager
+    def _noted(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as e:
+            self.error = self.error or e
