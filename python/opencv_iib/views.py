@@ -57,4 +57,5 @@ class ViewMatcher:
     def match(self, image2: ArrayLike, mask2: Optional[ArrayLike] = None) -> ViewMatches:
         """As matchViews. The GIL is released meanwhile."""
         found, reason, view, *rows = self._core.match(as_image(image2), as_mask(mask2))
-        return ViewMatches(found, reason, *float_rows(*rows), view)
+        points1, points2, covariances, similarities = float_rows(*rows)
+        return ViewMatches(found, reason, points1, points2, covariances, similarities, view)
