@@ -27,6 +27,7 @@ from opencv_iib._upright import Turn, upright
 from opencv_iib.enums import AlignmentModel
 from opencv_iib.features import check_max_size
 from opencv_iib.geometry import ImageAligner
+from opencv_iib.views import rotation_and_scale
 
 CORNERS = ('top_left', 'top_right', 'bottom_right', 'bottom_left')
 HEADER = ['image', 'verdict', 'matches', *(f'error_{corner}' for corner in CORNERS),
@@ -51,7 +52,6 @@ STATE = 'align.json'  #: what a later call goes on from
 VIEWS = 'views'  #: pictures that browsers show, of those that they do not
 WARPED = tuple(map(np.dtype, ('u1', 'u2', 'i2', 'f4', 'f8')))  #: what cv2.warpPerspective takes
 LARGEST_SIDE = 32766  #: pixels that cv2.warpPerspective takes
-TOLD_ROTATION = 15  #: degrees: upright descriptors match images that are turned by less
 LONGEST_STEM = 200  #: bytes of a file's name, with room for a number and the suffix
 
 
@@ -65,13 +65,14 @@ class Aligned(NamedTuple):
     transform: Sequence[float] = ()  #: 3 x 3, row by row: from its pixels to those of the reference
     file: str = ''  #: as the reference's camera would see it
     size: Sequence[int] = ()  #: its width and height; none if it cannot be read
-    rotation: float = 0  #: degrees, 0 or more and below 360, by which it is turned against the reference, clockwise, beside what EXIF tells
+    rotation: float = 0  #: degrees by which it is rotated against the reference, clockwise, besides EXIF's orientation; 0: less than 8
+    scale: float = 1  #: of its pixels by the reference's; 1: less than a fifth more or less
 
     def __str__(self) -> str:
         if not self.file:
             return self.verdict
-        turned = f', turned by {self.rotation:.0f} degrees clockwise' if TOLD_ROTATION < self.rotation < 360 - TOLD_ROTATION else ''
-        return f'{self.matches} matches agree, its corners are known to {max(self.errors):.2f} pixels{turned}'
+        seen = f', scale {self.scale:.2f}, rotated by {self.rotation:.0f} degrees' if (self.rotation, self.scale) != (0, 1) else ''
+        return f'{self.matches} matches agree, its corners are known to {max(self.errors):.2f} pixels{seen}'
 
 
 class _Options(NamedTuple):
@@ -360,7 +361,7 @@ class _Work:
         transform /= transform[2, 2]
         errors = view.turn.corners(found.error.ravel()) * self._reference.factor
         aligned = Aligned(path, 'aligned', len(found.matches), errors.tolist(), transform.ravel().tolist(), '', view.size,
-                          _rotation(found.transform, view.grey.shape))
+                          *_rotation_and_scale(found.transform, view.grey.shape))
         return aligned if part is None else self._written(view, aligned, name, part)
 
     def write(self, path: str, aligned: Aligned, name: str, part: list[int]) -> Aligned:
@@ -414,11 +415,11 @@ class _Work:
         return warped
 
 
-def _rotation(transform: NDArray[np.float64], shape: Sequence[int]) -> float:
-    """Degrees by which an image is turned against the reference, clockwise, at its middle; 0 or more and below 360."""
-    middle, right = (transform @ (shape[1] / 2 + x, shape[0] / 2, 1) for x in (0, 1))
-    x, y = right[:2] / right[2] - middle[:2] / middle[2]
-    return float(np.degrees(np.arctan2(-y, x))) % 360
+def _rotation_and_scale(transform: NDArray[np.float64], shape: Sequence[int]) -> tuple[float, float]:
+    """Of an image against the reference, at its middle."""
+    middle, right, below = (transform @ (shape[1] / 2 + x, shape[0] / 2 + y, 1) for x, y in ((0, 0), (1, 0), (0, 1)))
+    columns = [(each[:2] / each[2] - middle[:2] / middle[2]) for each in (right, below)]
+    return rotation_and_scale(np.linalg.inv(np.column_stack(columns)))
 
 
 def _row(each: Aligned) -> list[str]:

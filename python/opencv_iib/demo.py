@@ -8,10 +8,12 @@ import numpy as np
 
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._files import check_images, check_outputs
+from opencv_iib._upright import Turn, upright
 from opencv_iib._images import Masks, check_picture, import_cv2, read_with_orientation, write_picture
 from opencv_iib.features import FeatureOptions, Features, make_detector
 from opencv_iib.functions import match
 from opencv_iib.keypoints import keypoints_to_array
+from opencv_iib.views import match_stored, rotation_and_scale, similarity
 
 MAX_ERROR = 3  # pixels from the homography, in the second image
 MIN_CONSISTENT = 10  # a homography agrees with up to 6 of matches drawn at random
@@ -27,9 +29,15 @@ class Result(NamedTuple):
     points_b: np.ndarray  #: M x 2
     good: np.ndarray  #: M: whether it agrees with the homography; none does where no homography was found
 
+    @property
+    def view(self) -> tuple[float, float]:
+        """Rotation of the second image, degrees, and its scale; 0 and 1 where it is matched as it is."""
+        return rotation_and_scale(similarity(self.points_a[self.good], self.points_b[self.good]))
+
     def __str__(self) -> str:
         if self.good.any():
-            return f'{self.name} {self.good.sum()} of {len(self.good)} consistent'
+            seen = ', scale {1:.2f}, rotated by {0:.0f} degrees'.format(*self.view) if self.name == 'IIB' and self.view != (0, 1) else ''
+            return f'{self.name} {self.good.sum()} of {len(self.good)} consistent{seen}'
         return f'{self.name}: no homography found in {len(self.good)} matches'
 
 
@@ -56,6 +64,12 @@ def demo(image_a: Path, image_b: Path, out: Path, options: FeatureOptions = Feat
         raise InvalidOption(str(e)) from None
     described = list(map(Features(options), images, orientations, masks))
     results = [_result('IIB', [rows for rows, _ in described], match(described[0][1], described[1][1]).pairs)]
+    if options.detector == 'HESSIAN' and (not results[0].good.any() or results[0].view != (0, 1)):
+        stored = [upright(image, orientation) for image, orientation in zip(images, orientations)]
+        turns = [Turn(orientation, *image.shape[1::-1]) for image, orientation in zip(images, orientations)]
+        seen = match_stored(stored, turns, [None if mask is None else upright(mask, way) for mask, way in zip(masks, orientations)], options.points)
+        of_views = _judged('IIB', seen.points1, seen.points2)
+        results[0] = max(of_views, results[0], key=lambda result: int(result.good.sum()))
     for name in ('SIFT', 'ORB') if options.detector == 'HESSIAN' else (options.detector,):
         other = _own_descriptor(name, images, masks, options.points)
         if other is not None:
@@ -66,10 +80,13 @@ def demo(image_a: Path, image_b: Path, out: Path, options: FeatureOptions = Feat
 
 
 def _result(name: str, rows: list[np.ndarray], pairs: np.ndarray) -> Result:
+    return _judged(name, *(each[pairs[:, side], :2] for side, each in enumerate(rows)))
+
+
+def _judged(name: str, a: np.ndarray, b: np.ndarray) -> Result:
     cv2 = import_cv2()
-    a, b = (each[pairs[:, side], :2] for side, each in enumerate(rows))
-    good = np.zeros(len(pairs), bool)
-    matrix = cv2.findHomography(a, b, cv2.USAC_MAGSAC, MAX_ERROR)[0] if len(pairs) >= 4 else None
+    good = np.zeros(len(a), bool)
+    matrix = cv2.findHomography(a, b, cv2.USAC_MAGSAC, MAX_ERROR)[0] if len(a) >= 4 else None
     if matrix is not None:
         good = np.linalg.norm(cv2.perspectiveTransform(a[:, None].astype(float), matrix)[:, 0] - b, axis=1) <= MAX_ERROR
     return Result(name, a, b, good if good.sum() >= MIN_CONSISTENT else np.zeros_like(good))

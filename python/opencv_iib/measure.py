@@ -1,7 +1,6 @@
 """Matches of two images to a fraction of a pixel, and the pose between their cameras."""
 from __future__ import annotations
 
-import copy
 import io
 import json
 import os
@@ -18,13 +17,11 @@ from opencv_iib._streams import is_open_file
 from opencv_iib._two_views import show_the_same
 from opencv_iib._upright import Turn, upright
 from opencv_iib.demo import GOOD, INK, OTHER, draw
-from opencv_iib.enums import Orientation
 from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.functions import match
 from opencv_iib.geometry import FoundPose, NoPose, findRelativePose
-from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.refinement import PropagatedMatches, RefinedMatches, prepared, propagateMatches
-from opencv_iib.rotation import matchRotated
+from opencv_iib.views import match_stored, rotation_and_scale, similarity
 
 COMPARED = .25  # pixels: one scale of poses whose matches are counted, since under scales of their own the looser one has more
 SUFFIXES = '.csv', '.json', '.npz'
@@ -38,7 +35,9 @@ class Measured(NamedTuple):
     bits: NDArray[np.int32]  #: of each match, that differ
     pose: Union[FoundPose, NoPose, None]  #: None without cameras
     found: bool  #: there is a pose, or without cameras more matches than chance may give agree with one epipolar geometry or homography
-    rotation: float = 0  #: degrees by which the second image is turned against the first, clockwise, beside what EXIF tells
+    view: NDArray[np.float64]  #: 3 x 3: approximate affine map from pixels of the first image to pixels of the second
+    rotation: float = 0  #: degrees by which the second image is rotated against the first, clockwise, besides EXIF's orientation; 0: less than 8
+    scale: float = 1  #: of the second image's pixels by the first's; 1: less than a fifth more or less
 
     @property
     def refined(self) -> NDArray[np.bool_]:
@@ -61,7 +60,7 @@ class Measured(NamedTuple):
 
         A row a match: both points in pixels (the centre of the first pixel is 0), the covariance of the second, the patches'
         correlation (-1: not refined), bits that differ, with cameras whether it agrees with the pose, and `found`. JSON and NPZ have `found`,
-        the rotation and the pose too; in JSON it is null without cameras, as is a number that is not finite, and ``matches`` are objects.
+        the view, the rotation, the scale and the pose too; in JSON it is null without cameras, the view where not found, as is a number that is not finite, and ``matches`` are objects.
 
         :raises InvalidOption: for another suffix.
         """
@@ -79,12 +78,12 @@ class Measured(NamedTuple):
         if suffix == '.npz':
             arrays = io.BytesIO()
             known = {name: value for name, value in {'found': self.found, **(pose or {})}.items() if value is not None}
-            np.savez_compressed(arrays, **self.matches._asdict(), bits=self.bits, rotation=self.rotation, **known)
+            np.savez_compressed(arrays, **self.matches._asdict(), bits=self.bits, view=self.view, rotation=self.rotation, scale=self.scale, **known)
             return arrays.getvalue()
         if suffix == '.json':
             matches = [dict(zip(COLUMNS, (json.loads(text) if np.isfinite(float(text)) else None for text in row))) for row in rows]
-            return json.dumps({'found': bool(self.found), 'matches': matches, 'pose': pose, 'rotation': float(self.rotation)}, default=_finite,
-                              allow_nan=False).encode()
+            return json.dumps({'found': bool(self.found), 'matches': matches, 'pose': pose, 'view': self.view if self.found else None,
+                               'rotation': float(self.rotation), 'scale': float(self.scale)}, default=_finite, allow_nan=False).encode()
         header = [*COLUMNS, *['agrees'] * (pose is not None), 'found']
         marks = [[f'{agrees:d}'] * (pose is not None) + [f'{self.found:d}'] for agrees in self.agree.tolist()]
         return ''.join(','.join(row) + '\n' for row in (header, *map(list.__add__, rows, marks))).encode()
@@ -94,8 +93,8 @@ class Measured(NamedTuple):
         text = f'{len(self.bits)} matches, {count} refined'
         if count:
             text += f' to {np.median(self.deviations[self.refined]):.2f} pixels (median standard deviation)'
-        if self.rotation:
-            text += f', the second image is turned by {self.rotation:.0f} degrees clockwise'
+        if self.found and (self.rotation, self.scale) != (0, 1):
+            text += f', the second image has scale {self.scale:.2f} and is rotated by {self.rotation:.0f} degrees'
         if self.pose is None:
             return text + '\nthese may not show the same: no more matches agree with one geometry than chance may give' * (not self.found)
         if not self.pose.found:
@@ -169,6 +168,7 @@ class View(NamedTuple):
 
     stored: np.ndarray  #: as its file has it, BGR
     image: np.ndarray  #: as people see it
+    mask: Optional[np.ndarray]  #: of that
     turn: Turn
     lens: Optional[Camera]  #: of the file
     rows: np.ndarray  #: keypoints of the upright image
@@ -187,35 +187,30 @@ class View(NamedTuple):
                                 f"image's own camera, PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in "
                                 'pixels')
         image = upright(stored, orientation)
+        try:
+            mask = masks.of(name, stored)
+        except ValueError as e:
+            raise InvalidOption(f'{path}: {e}') from None
         if described is None:
-            try:
-                mask = masks.of(name, stored)
-            except ValueError as e:
-                raise InvalidOption(f'{path}: {e}') from None
-            described = features(image, mask=mask if mask is None else upright(mask, orientation))
-        return cls(stored, image, Turn(orientation, width, height), lens, *described)
+            described = features(image, mask=None if mask is None else upright(mask, orientation))
+        return cls(stored, image, None if mask is None else upright(mask, orientation), Turn(orientation, width, height), lens, *described)
 
 
 def measure(first: View, second: View, features: Features) -> Measured:
     """What match_images does, of images that were described by these features."""
     pair = _Pair(first, second)
     measured = pair.measured((first.rows, second.rows), (first.codes, second.codes), match(first.codes, second.codes).pairs)
-    if features.options.orientation or not len(first.rows) or not len(second.rows) or measured.found:
+    if features.options.orientation or measured.found and (measured.rotation, measured.scale) == (0, 1):
         return measured
-    extractor = copy.copy(features.extractor)  # EXIF may tell nothing of a turned camera
-    extractor.setOrientation(Orientation.KEYPOINT)
-    rotation, *rows, matches = matchRotated(first.image, second.image, extractor, HierarchicalMatcher.createRecommended(), -1, first.rows,
-                                            second.rows)
-    codes = [extractor.compute(image, some)[1] for image, some in zip(pair.images, rows)]
-    turned = pair.measured(rows, codes, matches[:, :2])
-    return turned._replace(rotation=rotation) if turned.found else measured
+    seen = pair.seen(features.options.points)
+    return seen if seen.found and (not measured.found or seen.agree.sum() > measured.agree.sum()) else measured
 
 
 class _Pair:
     """Two images as people see them, and the cameras of their files, if these are known."""
 
     def __init__(self, *views: View) -> None:
-        self.images, self._turns = [view.image for view in views], [view.turn for view in views]
+        self.images, self._masks, self._turns = zip(*((view.image, view.mask, view.turn) for view in views))
         self._prepared = [prepared(image) for image in self.images]
         self.lenses = [view.lens for view in views if view.lens is not None]
 
@@ -226,28 +221,48 @@ class _Pair:
         if self.lenses:
             # Where a pattern repeats, wrong matches lead to further ones, but seldom to one pose: a second try is from those alone
             # that agree with a first one. Only where right matches are few, the first try knows more.
-            pose = self._pose(propagated)
-            first = self._pose(PropagatedMatches(*(each[:count] for each in propagated)))
+            pose = self._pose(*propagated[1:3])
+            first = self._pose(*(points[:count] for points in propagated[1:3]))
             again, _ = self._propagated(rows, propagated.matches[:count][first.inliers.ravel() > 0])
-            pose, propagated = max((pose, propagated), (self._pose(again), again),
-                                   key=lambda found: (found[0].found, int(self._pose(found[1], COMPARED).inliers.sum())))
+            pose, propagated = max((pose, propagated), (self._pose(*again[1:3]), again),
+                                   key=lambda found: (found[0].found, int(self._pose(*found[1][1:3], scale=COMPARED).inliers.sum())))
         a, b = (some[propagated.matches[:, side]] for side, some in enumerate(codes))
         bits = np.unpackbits(a ^ b, axis=1).sum(axis=1, dtype=np.int32)
         matches = RefinedMatches(*propagated[1:])
         found = pose.found if pose is not None else show_the_same(matches.points1, matches.points2)
-        return Measured(matches, bits, pose, found)
+        agree = pose.inliers.ravel() > 0 if pose is not None else matches.similarities >= 0
+        view = similarity(matches.points1[agree], matches.points2[agree])
+        return Measured(matches, bits, pose, found, view, *rotation_and_scale(self._upright(view)))
+
+    def seen(self, points: int) -> Measured:
+        """In views of both images, whatever the zoom, rotation and tilt between them; bits are -1, since no keypoints are kept."""
+        found = match_stored(self.images, self._turns, self._masks, points)
+        visible = self._visible(found.points1, found.points2)
+        matches = RefinedMatches(*(each[visible] for each in found[2:6]))
+        pose = self._pose(matches.points1, matches.points2) if self.lenses else None
+        view = np.eye(3) if found.view is None else found.view
+        return Measured(matches, np.full(len(matches.points1), -1, np.int32), pose, found.found if pose is None else pose.found,
+                        view, *rotation_and_scale(self._upright(view)))
+
+    def _upright(self, view: np.ndarray) -> np.ndarray:
+        """Of a map between the files' pixels."""
+        return np.linalg.inv(self._turns[1].matrix) @ view @ self._turns[0].matrix
+
+    def _visible(self, *points: np.ndarray) -> np.ndarray:
+        """Which matches the cameras can see: a lens shows nothing beyond its range."""
+        seen = np.ones(len(points[0]), bool)
+        for some, lens in zip(points, self.lenses):
+            seen &= np.isfinite(lens.undistorted(some)).all(axis=1)
+        return seen
 
     def _propagated(self, rows: Sequence[np.ndarray], given: np.ndarray) -> tuple[PropagatedMatches, int]:
-        """What cameras see of what matches lead to, in the files' pixels, and how many of them were given: a lens shows nothing beyond
-        its range."""
+        """What cameras see of what matches lead to, in the files' pixels, and how many of them were given."""
         found = propagateMatches(self._prepared[0], rows[0], self._prepared[1], rows[1], given)
         found = found._replace(points1=self._turns[0].points(found.points1), points2=self._turns[1].points(found.points2),
                                covariances=self._turns[1].covariances(found.covariances))
-        seen = np.ones(len(found.matches), bool)
-        for points, lens in zip(found[1:3], self.lenses):
-            seen &= np.isfinite(lens.undistorted(points)).all(axis=1)
+        seen = self._visible(*found[1:3])
         return PropagatedMatches(*(each[seen] for each in found)), int(seen[:len(given)].sum())
 
-    def _pose(self, matches: PropagatedMatches, scale: float = 0) -> Union[FoundPose, NoPose]:
-        a, b = (lens.undistorted(points) for points, lens in zip(matches[1:3], self.lenses))
+    def _pose(self, *points: np.ndarray, scale: float = 0) -> Union[FoundPose, NoPose]:
+        a, b = (lens.undistorted(some) for some, lens in zip(points, self.lenses))
         return findRelativePose(a, b, self.lenses[0].matrix, self.lenses[1].matrix, scale)

@@ -1,7 +1,7 @@
 """Matches at any zoom, rotation and tilt."""
 from __future__ import annotations
 
-from typing import NamedTuple, Optional
+from typing import Any, NamedTuple, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,7 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import integer, number
 from opencv_iib._arrays import as_image, as_mask
+from opencv_iib._upright import Turn
 from opencv_iib.refinement import float_rows
+
+MOST_ROTATION, MOST_SCALE = 8, 1.2  # degrees, and factor, between images that are matched as they are
 
 
 class ViewMatches(NamedTuple):
@@ -39,6 +42,34 @@ def matchViews(image1: ArrayLike, image2: ArrayLike, maxFeatures: int = 4000, ma
     """
     images = as_image(image1), as_image(image2)  # mistakes of both, before either is described
     return ViewMatcher(images[0], maxFeatures, maxTilt, mask1).match(images[1], mask2)
+
+
+def match_stored(images: Sequence[NDArray[Any]], turns: Sequence[Turn], masks: Sequence[Optional[NDArray[Any]]], points: int) -> ViewMatches:
+    """As matchViews, of two upright images and their masks, in the pixels of their files."""
+    found = matchViews(images[0], images[1], points, mask1=masks[0], mask2=masks[1])
+    return found._replace(points1=turns[0].points(found.points1), points2=turns[1].points(found.points2),
+                          covariances=turns[1].covariances(found.covariances),
+                          view=None if found.view is None else turns[1].matrix @ found.view @ np.linalg.inv(turns[0].matrix))
+
+
+def similarity(points1: np.ndarray, points2: np.ndarray) -> np.ndarray:
+    """3 x 3: that maps points of image 1 to those of image 2, most of which are right: its numbers are medians over pairs of points."""
+    if len(points1) < 2:
+        return np.eye(3)
+    a, b = (points.astype(float) @ [1, 1j] for points in (points1, points2))
+    i, j = np.random.default_rng(1).integers(len(a), size=(2, 4000))
+    ratios = ((b[i] - b[j])[a[i] != a[j]]) / ((a[i] - a[j])[a[i] != a[j]])
+    turn = np.median(ratios.real) + 1j * np.median(ratios.imag)
+    shift = b - turn * a
+    return np.array([[turn.real, -turn.imag, np.median(shift.real)], [turn.imag, turn.real, np.median(shift.imag)], [0, 0, 1]])
+
+
+def rotation_and_scale(view: np.ndarray) -> tuple[float, float]:
+    """Of an affine map; 0 and 1 where images match as well as they are as in views of them."""
+    turn = (view[0, 0] + view[1, 1] + 1j * (view[1, 0] - view[0, 1])) / 2
+    rotation, scale = np.degrees(np.angle(turn)), float(np.sqrt(abs(np.linalg.det(view[:2, :2]))))
+    alike = abs(np.log(scale)) < np.log(MOST_SCALE) and abs(rotation) < MOST_ROTATION
+    return (0, 1) if alike else (float(rotation % 360), scale)
 
 
 class ViewMatcher:

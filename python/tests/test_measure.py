@@ -12,6 +12,7 @@ from unittest import mock
 
 import numpy as np
 
+import opencv_iib
 from opencv_iib.align import align
 from opencv_iib._files import RECORD
 from opencv_iib._images import decode_all, decode_first, write_picture
@@ -125,15 +126,33 @@ class Match(Commands):
     def test_the_verdict_is_sought_once(self):
         picture = self.world((4, 4))
         a, b = self.write('a.png', picture[:300, :400]), self.write('b.png', picture[20:320, 30:430])
+        unseen = opencv_iib.matchViews(np.zeros((9, 9), np.uint8), np.zeros((9, 9), np.uint8))
         for expected in (True, False):
-            with mock.patch('opencv_iib.measure.show_the_same', return_value=expected) as verdict:
+            with mock.patch('opencv_iib.measure.show_the_same', return_value=expected) as verdict, \
+                    mock.patch('opencv_iib.measure.match_stored', return_value=unseen):
                 status, out, _ = run_command('match', a, b, '--out', self.folder / 'm.json')
                 found = match_images(a, b)
                 for suffix in ('csv', 'npz'):
                     found.save(self.folder / f'm.{suffix}')
                 self.assertEqual({json.loads((self.folder / 'm.json').read_text())['found'], bool(np.load(self.folder / 'm.npz')['found']),
                                   *(row['found'] == '1' for row in self.rows('m.csv'))}, {expected})
-            self.assertEqual((verdict.call_count // 2, 'may not show the same' in out, status), (1 if expected else 2, not expected, 0 if expected else 3))
+            self.assertEqual((verdict.call_count, 'may not show the same' in out, status), (2, not expected, 0 if expected else 3))
+
+    def test_another_zoom_and_rotation(self):
+        picture = self.world((4, 4))
+        small = cv2.rotate(cv2.resize(picture, None, fx=.4, fy=.4, interpolation=cv2.INTER_AREA), cv2.ROTATE_90_CLOCKWISE)
+        a, b = self.write('a.png', picture), self.write('b.png', small)
+        status, out, _ = run_command('match', a, b, '--out', self.folder / 'm.json')
+        self.assertEqual(status, 0)
+        self.assertIn('scale 0.40 and is rotated by 90 degrees', out)
+        found = json.loads((self.folder / 'm.json').read_text())
+        expected = np.array([[0, -.4, small.shape[1] - .7], [.4, 0, -.3], [0, 0, 1]])
+        np.testing.assert_allclose(found['view'], expected, atol=2)
+        errors = [np.hypot(*(expected[:2] @ [match['x1'], match['y1'], 1] - [match['x2'], match['y2']])) for match in found['matches']]
+        self.assertGreater(np.mean(np.array(errors) < 1), .9)
+        self.assertEqual({match['bits'] for match in found['matches']}, {-1})
+        status, out, _ = run_command('demo', a, b, '--out', self.folder / 'd.png')
+        self.assertRegex(out, r'^IIB \d+ of \d+ consistent, scale 0.40, rotated by 90 degrees, SIFT')
 
     def test_nothing_found_and_mistakes(self):
         a, flat = self.write('a.png', self.world((4, 4))), self.write('flat.png', np.zeros((360, 480), np.uint8))
@@ -400,10 +419,10 @@ class Align(Commands):
         paths = [self.write(name, image) for name, image in (('a.png', first), ('b.png', cv2.rotate(first, cv2.ROTATE_90_CLOCKWISE)))]
         measured = match_images(*paths)
         self.assertAlmostEqual(measured.rotation, 90, delta=2)
-        self.assertIn('the second image is turned by 90 degrees clockwise', str(measured))
+        self.assertIn('rotated by 90 degrees', str(measured))
         found, = align(*paths[:1], paths[1:], str(self.folder / 'out'))
         self.assertAlmostEqual(found.rotation, 90, delta=2)
-        self.assertIn(', turned by 90 degrees', str(found))
+        self.assertIn(', scale 1.00, rotated by 90 degrees', str(found))
 
     def test_folders_and_patterns(self):
         paths = self.pictures('r.png', 'f/1.png', 'f/2.png', 'f/more/1.png', '[x].png')
