@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// ImageAligner and alignImages with small images of any type, masks and models: a cv::Exception for what the header forbids and
+// ImageAligner, alignImages and matchViews with small images of any type, masks and models: a cv::Exception for what the header forbids and
 // for nothing else; else no transform with a reason, or one with no more freedom than the model, of matches that masks allow.
 
 #include "images.hpp"
 
 #include "opencv2/iib/alignment.hpp"
+#include "opencv2/iib/views.hpp"
 #include "opencv2/imgproc.hpp"
 
 #include <map>
@@ -85,6 +86,41 @@ bool fits(const Mat& mask, const Mat& image)
     return mask.empty() || (mask.type() == CV_8U && mask.size() == image.size());
 }
 
+//! Refinement moves a point, and views show a mask to a pixel or two.
+void checkAllowed(const Mat& mask, const Point2f& point)
+{
+    const Rect around(Point((int)point.x - 4, (int)point.y - 4), Size(9, 9));
+    FUZZ_CHECK(mask.empty() || countNonZero(mask(around & Rect(Point(), mask.size()))) > 0);
+}
+
+void checkViews(const Mat& first, const Mat& mask1, const Mat& second, const Mat& mask2, double maxTilt)
+{
+    Mat points1, points2, covariances, similarities, view;
+    String reason;
+    bool found = false;
+    const bool thrown = refused([&] {
+        found = matchViews(first, second, points1, points2, covariances, similarities, view, 300, maxTilt,
+                mask1, mask2, &reason);
+    });
+    FUZZ_CHECK(thrown == !(maxTilt >= 1 && maxTilt <= 8 && isTaken(first) && isTaken(second) &&
+                                 fits(mask1, first) && fits(mask2, second)));
+    if (thrown)
+        return;
+    FUZZ_CHECK(found == reason.empty() && found == !view.empty());
+    FUZZ_CHECK(points1.size() == points2.size() && points1.rows == covariances.rows &&
+               points1.rows == similarities.rows);
+    FUZZ_CHECK(view.empty() || (view.size() == Size(3, 3) && view.type() == CV_64F && checkRange(view)));
+    for (int i = 0; i < points1.rows; i++)
+    {
+        const Vec2f p = points1.at<Vec2f>(i), q = points2.at<Vec2f>(i);
+        FUZZ_CHECK(std::isfinite(p[0] + p[1] + q[0] + q[1]));
+        const Vec3f c = covariances.at<Vec3f>(i);
+        FUZZ_CHECK(c[0] > 0 && c[2] > 0 && c[0] * c[2] > c[1] * c[1]);
+        checkAllowed(mask1, Point2f(p[0], p[1]));
+        checkAllowed(mask2, Point2f(q[0], q[1]));
+    }
+}
+
 void checkAnswer(const Mat& reference, const Mat& mask, const Mat& image, const Mat& other, int model,
         const Mat& found, const Mat& error, const Mat& matches)
 {
@@ -107,9 +143,8 @@ void checkAnswer(const Mat& reference, const Mat& mask, const Mat& image, const 
         const Point first((int)(match[0] + .5f), (int)(match[1] + .5f));  // as OpenCV masks keypoints
         FUZZ_CHECK(Rect(Point(), reference.size()).contains(first) &&
                    there.contains(Point2f(match[2], match[3])));
-        FUZZ_CHECK(mask.empty() || mask.at<uchar>(first) != 0);
-        const Rect around(Point((int)match[2] - 4, (int)match[3] - 4), Size(9, 9));  // refinement moves it
-        FUZZ_CHECK(other.empty() || countNonZero(other(around & Rect(Point(), other.size()))) > 0);
+        checkAllowed(mask, Point2f(match[0], match[1]));
+        checkAllowed(other, Point2f(match[2], match[3]));
     }
 }
 
@@ -118,6 +153,12 @@ void run(ByteSource& in)
     const int seed = in.between(0, 3), model = in.between(-in.rarely(32), ALIGN_HOMOGRAPHY);
     const Mat reference = takePicture(in, seed, Matx33d::eye()), mask = takeMask(in, reference);
     useThreads(1);
+    if (in.flag())
+    {
+        const Mat image = takePicture(in, seed, takeTransform(in)), other = takeMask(in, image);
+        return checkViews(
+                reference, mask, image, other, in.rarely(32) ? in.between(-1, 10) : in.between(1, 8));
+    }
     Ptr<ImageAligner> aligner;
     FUZZ_CHECK(refused([&] { aligner = ImageAligner::create(reference, model, mask); }) ==
                (model < 0 || !fits(mask, reference)));

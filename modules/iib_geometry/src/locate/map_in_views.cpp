@@ -29,7 +29,8 @@ std::vector<Match> matchesInViews(const Map& map, size_t view, const ImageViews&
     const std::vector<Point3d> points = map.seenBy(mapImage);
     for (size_t row = 0; row < points.size(); row++)
     {
-        const Point2d pixel = mapImage.pixels[row], place((pixel.x + .5) * scale - .5, (pixel.y + .5) * scale - .5);
+        const Point2d pixel = mapImage.pixels[row],
+                      place((pixel.x + .5) * scale - .5, (pixel.y + .5) * scale - .5);
         int nearest = -1;
         double least = reach;
         for (int i = 0; i < found.points1.rows; i++)

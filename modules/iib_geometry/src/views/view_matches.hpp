@@ -12,8 +12,9 @@ struct ViewMatches
 {
     Mat points1, points2, covariances, similarities;  //!< as matchViews has them
     double logFalseAlarms = std::numeric_limits<double>::infinity();
-    double right = 0;              //!< number of matches that agree
-    Matx33d map = Matx33d::eye();  //!< affine, estimated from those that agree, from pixels of image 1 to pixels of image 2
+    double right = 0;  //!< number of matches that agree
+    Matx33d map = Matx33d::
+            eye();  //!< affine, estimated from those that agree, from pixels of image 1 to pixels of image 2
 
     bool isDecisive() const;  //!< whether nothing else need be tried
 };
