@@ -100,7 +100,8 @@ def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: Arra
     return none
 
 
-def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentModel.HOMOGRAPHY) -> Union[Alignment, NoAlignment]:
+def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentModel.HOMOGRAPHY, referenceMask: Optional[ArrayLike] = None,
+                mask: Optional[ArrayLike] = None) -> Union[Alignment, NoAlignment]:
     """Aligns an image with a reference that was taken in another light, as ``cv2.iib.alignImages``.
 
     For images of a plane, or of anything by a camera that stays where it is, though it may turn and zoom. With cv2,
@@ -108,12 +109,13 @@ def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentMo
 
     :param reference: as IIBDescriptorExtractor takes it; so is `image`.
     :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors.
+    :param referenceMask: H x W uint8, 0 where no points are to be found in the reference; so is `mask` of the image.
     :return: a tuple (found, transform, error, matches): a NoAlignment where the matches are not more than chance, where
         they span a small part of what both show, as a logo does, or where the images differ by more than the model.
     :raises opencv_iib.error: for images of another type, and a model that is none.
     """
     images = as_image(reference), as_image(image)  # mistakes of both, before either is described
-    return ImageAligner(images[0], model).align(images[1])
+    return ImageAligner(images[0], model, referenceMask).align(images[1], mask)
 
 
 class ImageAligner:

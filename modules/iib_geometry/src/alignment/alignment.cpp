@@ -360,9 +360,10 @@ Ptr<ImageAligner> ImageAligner::create(InputArray reference, int model, InputArr
 }
 
 bool alignImages(InputArray reference, InputArray image, OutputArray transform, int model, OutputArray error,
-        OutputArray matches, String* reason)
+        OutputArray matches, String* reason, InputArray referenceMask, InputArray mask)
 {
-    return ImageAligner::create(reference, model)->align(image, transform, error, matches, reason);
+    return ImageAligner::create(reference, model, referenceMask)
+            ->align(image, transform, error, matches, reason, mask);
 }
 
 }  // namespace cv::iib

@@ -165,6 +165,10 @@ TEST(Alignment, looks_at_what_masks_allow)
     ASSERT_TRUE(aligner->align(image, transform, noArray(), noArray(), nullptr, mask));
     EXPECT_NEAR(30, transform.at<double>(0, 2), .2);
     EXPECT_NEAR(20, transform.at<double>(1, 2), .2);
+    Mat same;
+    ASSERT_TRUE(alignImages(
+            reference, image, same, ALIGN_TRANSLATION, noArray(), noArray(), nullptr, mask, mask));
+    EXPECT_EQ(0, cv::norm(same, transform, NORM_INF));
     for (const Mat& wrong : {Mat(mask(Rect(0, 0, 9, 9))), Mat(SIZE, CV_32F, Scalar(1))})
         EXPECT_ANY_THROW(ImageAligner::create(reference, ALIGN_TRANSLATION, wrong));
 }

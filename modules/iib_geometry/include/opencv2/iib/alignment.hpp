@@ -60,11 +60,12 @@ which the wind moved. Two of 21 pairs under other lamps are refused for the way 
 @param matches N x 4, CV_32F: the matches that agree with the transform, x and y in the reference, x and y in the image,
     pixels; where the answer is false, those that agreed best
 @param reason if not null: why there is no transform, a sentence; empty if there is one
+@param referenceMask, mask CV_8UC1 of the size of the reference and of the image, 0 where no points are to be found; empty: everywhere
 @return false, with transform and error empty (NaN where their size is fixed), if there is none
 @throws cv::Exception for an unknown model, and as IIBDescriptorExtractor::compute for images */
 CV_EXPORTS_W bool alignImages(InputArray reference, InputArray image, OutputArray transform,
         int model = ALIGN_HOMOGRAPHY, OutputArray error = noArray(), OutputArray matches = noArray(),
-        CV_OUT String* reason = nullptr);
+        CV_OUT String* reason = nullptr, InputArray referenceMask = noArray(), InputArray mask = noArray());
 
 /** @brief Aligns many images with one reference as alignImages does, and describes the reference once.
 
