@@ -102,17 +102,17 @@ double processorTime()
     return double(time.tv_sec) * 1e3 + double(time.tv_nsec) * 1e-6;
 }
 
-//! A row for two images. @param truth null: no match is right.
-void matchBy(const PairMethod& method, const cv::Mat& image1, const cv::Mat& image2, const cv::Matx33d* truth,
-        double tolerance, Fields row, ResultTable& table)
+//! A row for two images.
+void matchBy(
+        const PairMethod& method, const LoadedPair& images, double tolerance, Fields row, ResultTable& table)
 {
     Points points;
     const double start = processorTime();
-    const bool found = method.match(image1, image2, points);
+    const bool found = method.match(images.reference, images.target, points);
     const double time = processorTime() - start;
     int right = 0;
-    for (size_t i = 0; truth && i < points.target.size(); i++)
-        right += projectionError(*truth, points.reference[i], points.target[i]) < tolerance;
+    for (size_t i = 0; i < points.target.size(); i++)
+        right += projectionError(images.homography, points.reference[i], points.target[i]) < tolerance;
     row.insert(row.end(), {method.name, std::to_string(found), std::to_string(right),
                                   std::to_string(points.target.size()), text(time)});
     table.append(row);
@@ -138,45 +138,48 @@ int warpedViews(const Options& options, const std::vector<ImagePair>& pairs)
 {
     ResultTable table(options.out + "/views.csv",
             {"set", "sequence", "kind", "amount", "method", "found", "right", "matches", "milliseconds"}, 5);
-    const std::vector<PairMethod> methods = pairMethods(options.points);
     std::vector<Task> tasks;
-    const auto plan = [&](const Fields& key, const PairMethod& method, const std::function<void()>& run) {
-        Fields row = key;
-        row.push_back(method.name);
-        if (!table.has(row))
-            tasks.push_back({key[0] + "/" + key[1] + ", " + key[2] + " " + key[3] + ", " + method.name, run});
+    const auto plan = [&](const Fields& key, const std::function<bool(const PairMethod&)>& isUsed,
+                              const std::function<LoadedPair()>& load) {
+        std::vector<PairMethod> missing;
+        for (const PairMethod& method : pairMethods(options.points))
+            if (isUsed(method) && !table.has({key[0], key[1], key[2], key[3], method.name}))
+                missing.push_back(method);
+        if (!missing.empty())
+            tasks.push_back({key[0] + "/" + key[1] + " " + key[2] + " " + key[3], [&, key, load, missing] {
+                                 const LoadedPair images = load();
+                                 for (const PairMethod& method : missing)
+                                     matchBy(method, images, options.tolerance, key, table);
+                             }});
     };
     const std::vector<Fields> all = photographs(options, pairs);
     for (size_t i = 0; i < all.size(); i++)
         for (const Warp& warp : warps())
-            for (const PairMethod& method : methods)
-                if (!method.slow || (warp.bySlow && i % SLOW_EVERY == 0))
-                {
-                    const Fields key = {all[i][0], all[i][1], warp.kind, warp.amount};
-                    const std::string file = all[i][2];
-                    plan(key, method, [&options, &table, &method, file, key, warp, i] {
-                        const cv::Mat image = readReduced(file);
-                        cv::Matx33d truth;
-                        const cv::Mat other = warped(image, warp, i + 1, truth);
-                        matchBy(method, image, other, &truth, options.tolerance, key, table);
+            plan(
+                    {all[i][0], all[i][1], warp.kind, warp.amount},
+                    [&](const PairMethod& method) {
+                        return !method.slow || (warp.bySlow && i % SLOW_EVERY == 0);
+                    },
+                    [&all, warp, i] {
+                        LoadedPair images;
+                        images.reference = readReduced(all[i][2]);
+                        images.target = warped(images.reference, warp, i + 1, images.homography);
+                        return images;
                     });
-                }
     cv::RNG random(1);
     std::set<std::pair<const ImagePair*, const ImagePair*>> drawn;
     for (int k = 0; drawn.size() < UNRELATED && k < 10 * UNRELATED && !pairs.empty(); k++)
     {
         const ImagePair &one = pairs[random.uniform(0, (int)pairs.size())],
                         &other = pairs[random.uniform(0, (int)pairs.size())];
-        if (one.set == other.set || !drawn.insert({&one, &other}).second)
-            continue;
-        const Fields key = {
-                one.set, one.sequence + "/" + one.target + " and " + other.name(), "unrelated", ""};
-        for (const PairMethod& method : methods)
-            if (method.name == "matchViews" || method.name == "SIFT")
-                plan(key, method, [&, key] {
-                    matchBy(method, readReduced(one.referenceFile), readReduced(other.targetFile), nullptr, 0,
-                            key, table);
-                });
+        if (one.set != other.set && drawn.insert({&one, &other}).second)
+            plan(
+                    {one.set, one.sequence + "/" + one.target + " and " + other.name(), "unrelated", ""},
+                    [](const PairMethod& m) { return m.name == "matchViews" || m.name == "SIFT"; },
+                    [&one, &other] {  // no match is right
+                        return LoadedPair{readReduced(one.referenceFile), readReduced(other.targetFile),
+                                cv::Matx33d::zeros(), {}, {}};
+                    });
     }
     return runTasks("views", tasks, &table);
 }
