@@ -198,6 +198,11 @@ def summarize(source, target, groups_of, keys, values, *commit):
     write(target, ['place', *keys, 'pairs', *values, 'low', 'high', *['commit'] * len(commit)], (lines[key] for key in sorted(lines)))
 
 
+def misled(row):
+    """Whether most matches are wrong although the method calls them significant."""
+    return float(row['found'] == '1' and 2 * int(row['right']) < int(row['matches']))
+
+
 def summarize_views(source, target):
     """Matches of each method by how the view was changed; also of those photographs alone that the slow method matched."""
     slow = {(row['set'], row['sequence']) for row in read(source) if row['method'] == 'AffineFeature'}
@@ -205,7 +210,7 @@ def summarize_views(source, target):
     def places(row):
         found = view_place(row)
         return found + ['some photographs'] * (found == ['photographs'] and (row['set'], row['sequence']) in slow)
-    summarize(source, target, places, ('kind', 'amount', 'method'), columns('found', 'matches', 'milliseconds', 'right'))
+    summarize(source, target, places, ('kind', 'amount', 'method'), {**columns('found', 'matches', 'milliseconds'), 'misled': misled, **columns('right')})
 
 
 def gain(pairs):

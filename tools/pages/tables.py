@@ -389,10 +389,12 @@ def views_run():
     found, apart = view_rows('photographs'), view_rows('unrelated')
     one, sift = apart['unrelated', '', 'matchViews'], apart['unrelated', '', 'SIFT']
     run, = (row for row in rows('runs.csv') if row['file'] == 'views.csv')
+    changed = [row for place in ('photographs', 'chosen on') for key, row in view_rows(place).items() if key[2] == 'matchViews']
     return ('%s photographs of scenes that nothing was chosen on, at %s on %s (%s).\nOf %s pairs of images of different sets `matchViews` calls %.0f significant, '
-            'in %.0f ms on average. Detection, description and matching by SIFT\ntake %.0f ms of the same pairs.' % (
+            'in %.0f ms on average. Detection, description and matching by SIFT\ntake %.0f ms of the same pairs.\nOf the %d pairs of the first two tables it calls %.0f significant; in %.0f of these most matches are wrong.' % (
                 found['zoom', '1', 'SIFT']['pairs'], run['commit'].replace(';', ' and '), run['date'], run['machine'], one['pairs'], float(one['found']) * int(one['pairs']),
-                float(one['milliseconds']), float(sift['milliseconds'])))
+                float(one['milliseconds']), float(sift['milliseconds']), sum(int(row['pairs']) for row in changed),
+                *(sum(float(row[name]) * int(row['pairs']) for row in changed) for name in ('found', 'misled'))))
 
 
 def views_guide():
@@ -411,7 +413,8 @@ def views_guide():
             'chain takes %.0f; a search takes %s ms (SIFT %s; `cv::AffineFeature` with SIFT, which finds more matches of many more points,\n'
             '%s), and %.0f ms where the images have nothing in common (SIFT %.0f). All rotations are searched, relative sizes from a quarter to four\n'
             'times, and tilts up to 4 (`maxTilt`); the second image at twice the size leaves %s matches. Mirrored images are not found, and of a scene with strong\n'
-            'perspective perhaps one part alone ([all figures and conditions](results/README.md#other-zoom-rotation-and-tilt)).' % (
+            'perspective perhaps one part alone. Pictures that resemble themselves rotated by 180 degrees may be matched wrongly, and called significant\n'
+            '([all figures and conditions](results/README.md#other-zoom-rotation-and-tilt)).' % (
                 found['zoom', '1', 'SIFT']['pairs'], *(right('zoom', '0.25', method) for method in ('matchViews', 'upright chain', 'SIFT')),
                 *(right('tilt', '4', method) for method in ('matchViews', 'upright chain', 'SIFT')),
                 *(float(found['zoom', '1', method]['milliseconds']) for method in ('matchViews', 'upright chain')), times(found, 'matchViews'), times(found, 'SIFT'),

@@ -46,9 +46,9 @@ class Figures(unittest.TestCase):
             source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
             source.write_text('\n'.join(lines))
             summaries.summarize_views(source, target)
-            found = {(row['place'], row['method']): (row['pairs'], row['right'], row['found']) for row in summaries.read(target)}
-        self.assertEqual(found, {('photographs', 'SIFT'): ('2', '6', '1'), ('photographs', 'AffineFeature'): ('1', '9', '1'), ('some photographs', 'SIFT'): ('1', '4', '1'),
-                                 ('some photographs', 'AffineFeature'): ('1', '9', '1'), ('chosen on', 'SIFT'): ('1', '0', '1'), ('unrelated', 'SIFT'): ('1', '0', '0')})
+            found = {(row['place'], row['method']): (row['pairs'], row['right'], row['found'], row['misled']) for row in summaries.read(target)}
+        self.assertEqual(found, {('photographs', 'SIFT'): ('2', '6', '1', '0.5'), ('photographs', 'AffineFeature'): ('1', '9', '1', '0'), ('some photographs', 'SIFT'): ('1', '4', '1', '1'),
+                                 ('some photographs', 'AffineFeature'): ('1', '9', '1', '0'), ('chosen on', 'SIFT'): ('1', '0', '1', '1'), ('unrelated', 'SIFT'): ('1', '0', '0', '0')})
 
     def test_curves_are_of_scenes_that_nobody_was_trained_on(self):
         for row, places in ((('lights', 'street', 'light'), ['rendered']), (('lights', 'room', 'light'), []),
