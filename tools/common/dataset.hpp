@@ -11,7 +11,8 @@
 namespace iib_tools {
 
 /** What changes between the images of a sequence: "light", "blur", "jpeg", "viewpoint" or "zoom" (with rotation). Known
-for the sequences of Oxford by name and for HPatches by the prefix `v_`; "light" otherwise. */
+for the sequences of Oxford by name and for HPatches by the prefix `v_`; "marked" for pairs with correspondences by hand;
+"light" otherwise. */
 typedef std::string Kind;
 
 //! A reference image and a target image of the same scene; files are read by loadPair alone.
@@ -49,10 +50,12 @@ std::string stem(const std::string& path);
 /** Finds all pairs (1, k) below the given folders, up to four levels deep, in the layouts
  - `1.png`, `H_1_k` (also .ppm, .pgm, .jpg, .tif: HPatches), with `depth/k.png`, `labels/k.png` if any;
  - `img1.ppm`, `H1to2p` (original Oxford);
+ - `01.png`, `02.png`, `corrs.txt` (WxBS, also .jpg): lines of x1 y1 x2 y2 in place of a homography;
 Sequences without any H file are of a static camera; folders that hold `frames` (walks) and those of views.hpp are left
 out. The order is by path, numbers by value.
+@param marked whether to find those of the last layout, or all others
 @throws cv::Exception for a root that is no folder, or two pairs of the same name. */
-std::vector<ImagePair> findPairs(const std::vector<std::string>& roots);
+std::vector<ImagePair> findPairs(const std::vector<std::string>& roots, bool marked = false);
 
 //! @throws cv::Exception, in one line with the file's name, for a broken image or H file.
 LoadedPair loadPair(const ImagePair& pair);

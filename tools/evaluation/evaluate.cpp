@@ -24,7 +24,7 @@ struct Experiment
 const Experiment EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
         {"estimators", estimators}, {"alignment", alignment}, {"matching", matching},
         {"robustness", robustness}, {"comparison", comparison}, {"uncertainty", uncertainty},
-        {"localization_uncertainty", localizationUncertainty}};
+        {"localization_uncertainty", localizationUncertainty}, {"views", warpedViews}, {"wxbs", wxbs}};
 
 //! Results of other settings must not be mixed with these.
 void checkSettings(const Options& options)
@@ -67,7 +67,11 @@ int evaluate(const Options& options)
                     [&](const Experiment& e) { return name == e.name; }))
             CV_Error(cv::Error::StsBadArg, "unknown experiment " + name);
     const bool listed = !options.pairs.empty();
-    const std::vector<ImagePair> pairs = listed ? std::vector<ImagePair>() : findPairs(options.roots);
+    std::vector<ImagePair> pairs;
+    for (bool marked : {false, true})
+        if (!listed)
+            for (const ImagePair& pair : findPairs(options.roots, marked))
+                pairs.push_back(pair);
     if (!listed && pairs.empty() && findViewPairs(options.roots).empty())
         CV_Error(cv::Error::StsObjectNotFound,
                 "no image sequences found; the README of tools/evaluation tells the layouts");
@@ -78,11 +82,14 @@ int evaluate(const Options& options)
     if (readable.empty() && !pairs.empty())
         CV_Error(cv::Error::StsObjectNotFound,
                 "none of the " + std::to_string(pairs.size()) + " image pairs can be read");
+    std::vector<ImagePair> withTransforms, marked;
+    for (const ImagePair& pair : readable)
+        (pair.kind == "marked" ? marked : withTransforms).push_back(pair);
     int skipped = int(pairs.size() - readable.size());
     for (const Experiment& e : EXPERIMENTS)
         if (options.experiments.empty() || std::find(options.experiments.begin(), options.experiments.end(),
                                                    e.name) != options.experiments.end())
-            skipped += e.run(options, readable);
+            skipped += e.run(options, e.run == wxbs ? marked : withTransforms);
     std::cerr << "evaluated " << readable.size() << " of " << pairs.size() << " image pairs, skipped "
               << skipped << " pieces of work" << std::endl;
     return skipped;

@@ -39,6 +39,10 @@ int uncertainty(const Options& options, const std::vector<ImagePair>& pairs);
 //! Whether Localizer finds images where it says, as surely as it says, in maps of the other views below the roots.
 int localizationUncertainty(const Options& options, const std::vector<ImagePair>& pairs);
 int robustness(const Options& options, const std::vector<ImagePair>& pairs);
+//! matchViews and others on a photograph of each sequence and its view from elsewhere, computed; matchViews on unrelated images.
+int warpedViews(const Options& options, const std::vector<ImagePair>& pairs);
+//! Of pairs of the kind "marked": the share of correspondences that agree with the fundamental matrix of each method's matches.
+int wxbs(const Options& options, const std::vector<ImagePair>& pairs);
 //! Matches of IIB and others on the pairs of Options::compare at detected points. Beside the second image, whose name begins
 //! with N, there may be its homography, H_N; else the camera stood still.
 int comparison(const Options& options, const std::vector<ImagePair>& pairs);

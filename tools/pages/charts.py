@@ -133,6 +133,28 @@ def uncertainty():
     return svg(figure)
 
 
+def views():
+    """Right matches of each method by zoom, rotation and tilt."""
+    found, methods = tables.view_rows('photographs'), {'matchViews': (RED, '-'), 'upright chain': ('#fca5a5', '-'), 'SIFT': ('#047857', '-'), 'ORB': (GREY, '-'),
+                                                       'AffineFeature': ('#047857', ':')}
+    figure, axes = plt.subplots(1, 3, figsize=(WIDTH, 3.4), layout='constrained', sharey=True)
+    for axis, kind, label in zip(axes, ('zoom', 'rotation', 'tilt'), ('size of the second image', 'rotation, degrees', 'tilt: one axis shortened by')):
+        unchanged = {'zoom': 1, 'rotation': 0, 'tilt': 1}[kind]
+        for method, (colour, style) in methods.items():
+            values = {unchanged: found['zoom', '1', method], **{float(key[1]): row for key, row in found.items() if key[::2] == (kind, method)}}
+            axis.plot(sorted(values), [max(1, float(values[at]['right'])) for at in sorted(values)], style, color=colour, marker='o', markersize=3,
+                      label=method if method != 'AffineFeature' else 'AffineFeature with SIFT, %s photographs' % found['zoom', '1', method]['pairs'])
+        axis.set(xlabel=label, yscale='log', ylim=(.9, 12000))
+        axis.yaxis.set_major_formatter('{x:g}')
+    axes[0].set(xscale='log', xticks=(.25, .35, .5, .7, 1, 1.4, 2), ylabel='right matches (1: one or none)')
+    axes[0].xaxis.set_major_formatter('{x:g}')
+    axes[0].minorticks_off()
+    axes[1].set(xticks=range(0, 181, 45))
+    figure.legend(*axes[0].get_legend_handles_labels(), loc='upper center', ncols=5, frameon=False, fontsize='small')
+    figure.get_layout_engine().set(rect=(0, 0, 1, .9))  # below the legend
+    return svg(figure)
+
+
 def localization(results):
     """Share of images by error, in centimetres: a chart a light, a line a method."""
     colours = {'recommended chain': RED, 'SIFT, normalized image': BLUE, 'SIFT, plain image': GREY}

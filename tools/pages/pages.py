@@ -67,7 +67,7 @@ def everything():
     """All files that are made of results, and their text."""
     doc = ROOT / 'doc'
     made = {**markdown(), **results_page(tables.RESULTS), **localization_page(doc / 'localization')}
-    made.update({doc / (chart.__name__ + '.svg'): chart() for chart in (charts.speed, charts.poses, charts.uncertainty)})
+    made.update({doc / (chart.__name__ + '.svg'): chart() for chart in (charts.speed, charts.poses, charts.uncertainty, charts.views)})
     return {**made, **{doc / 'paper' / (draw.__name__ + '.svg'): draw() for draw in drawings.ALL}}
 
 

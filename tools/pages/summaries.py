@@ -24,6 +24,9 @@ UNSEEN_SCENES = {'street', 'facade'}  # rendered scenes without them
 CHOSEN_ON = {'walk_facade', 'strecha relit'}
 CHOSEN_SEEDS = {'1', '21', '22', '23', '31', '32'}
 REFERENCE = 'Hessian', 'IIB UNIVERSAL', 'propagated', 'findRelativePose'  # what other ways to a pose are compared with
+# Scenes that the constants of matchViews were chosen on, and one of the same place.
+CHOSEN_VIEWS = {'Herz-Jesus-P8', 'chamonix', 'courbevoie', 'boat', 'bikes', 'cam01', 'cam04', 'scene'}
+SAME_PLACE = {'iib_demo/scene', 'tilde_webcam/courbevoie'}
 VISITS = {'dusk', 'fog', 'morning', 'night', 'overcast', 'snow', 'wet', 'winter'}  # sequences of one place in other lights
 MODELS = ('TRANSLATION', 'SIMILARITY', 'AFFINE', 'HOMOGRAPHY')
 DRAWS = 400  # of the bootstrap
@@ -85,7 +88,17 @@ def alignment_place(row):
         return ['with noise']
     logo, other = ' with a logo' * row['image'].startswith('logo '), row['image'].removeprefix('logo ')
     scenes = {row['set'] + '/' + row['sequence'], other.rsplit('/', 1)[0]}
-    return ['other scenes' + logo] * (scenes != {'iib_demo/scene', 'tilde_webcam/courbevoie'})
+    return ['other scenes' + logo] * (scenes != SAME_PLACE)
+
+
+def view_place(row):
+    """Photographs seen from elsewhere: those of scenes that nothing was chosen on, or the others; and pairs of different sets."""
+    if row['kind'] == 'unrelated':
+        one, other = row['sequence'].split(' and ')
+        return ['unrelated'] * ({row['set'] + '/' + one.rsplit('/', 1)[0], other.rsplit('/', 1)[0]} != SAME_PLACE)
+    if row['set'] in RENDERED or re.match('synthetic|[a-z]+_[0-9]+$', row['set']):
+        return ['rendered']
+    return ['chosen on' if row['sequence'] in CHOSEN_VIEWS else 'photographs']
 
 
 def column(name):
@@ -127,6 +140,7 @@ PLANS = {
     'robustness.csv': (lambda row: ['turned'] * (row['set'] not in TRAINED_ON), ('kind', 'configuration', 'target'),
                        columns('precision', 'recall')),
     'alignment.csv': (alignment_place, ('model',), {'found': column('found'), 'squares': column('squares'), 'within_1': within(1), 'within_3': within(3)}),
+    'wxbs.csv': (lambda row: [row['set'], 'all'], ('method', 'points'), columns('found', 'matches', 'within_10', 'share')),
     'estimators.csv': (light_place, ('detector', 'descriptor', 'points', 'estimator'),
                        {'inliers': column('inliers'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_20': pose_area(20), 'at_5': pose_area(5)}),
     'poses_by_time.csv': (light_place, ('detector', 'points', 'matches', 'estimator'),
@@ -182,6 +196,21 @@ def summarize(source, target, groups_of, keys, values, *commit):
         ends = interval([[pair[-1] for pair in scene] for scene in scenes.values()])
         lines[key] = [*key, len(every), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends), *commit]
     write(target, ['place', *keys, 'pairs', *values, 'low', 'high', *['commit'] * len(commit)], (lines[key] for key in sorted(lines)))
+
+
+def misled(row):
+    """Whether most matches are wrong although the method calls them significant."""
+    return float(row['found'] == '1' and 2 * int(row['right']) < int(row['matches']))
+
+
+def summarize_views(source, target):
+    """Matches of each method by how the view was changed; also of those photographs alone that the slow method matched."""
+    slow = {(row['set'], row['sequence']) for row in read(source) if row['method'] == 'AffineFeature'}
+
+    def places(row):
+        found = view_place(row)
+        return found + ['some photographs'] * (found == ['photographs'] and (row['set'], row['sequence']) in slow)
+    summarize(source, target, places, ('kind', 'amount', 'method'), {**columns('found', 'matches', 'milliseconds'), 'misled': misled, **columns('right')})
 
 
 def gain(pairs):
@@ -305,7 +334,7 @@ def summarize_uncertainty(source, target):
 
 OTHERS = {'differences.csv': ('estimators.csv', summarize_differences), 'gains.csv': ('detected_points.csv', summarize_gains), 'curves.csv': ('detected_points.csv', summarize_curves),
           'learned.csv': ('detected_points.csv', summarize_learned), 'comparison.csv': ('comparison.csv', summarize_comparison),
-          'uncertainty.csv': ('uncertainty.csv', summarize_uncertainty)}
+          'uncertainty.csv': ('uncertainty.csv', summarize_uncertainty), 'views.csv': ('views.csv', summarize_views)}
 
 
 def today():

@@ -357,6 +357,70 @@ def photograph_claim():
                 statue['chain']['registered'].split()[-1], told('chain'), told('SIFT'), told('normalized'), run['date'], chain[0], sift[0], chain[1], sift[1]))
 
 
+def view_rows(place):
+    """Means over photographs seen from elsewhere, by kind of change, amount and method."""
+    return summaries.by(rows('views.csv'), 'kind', 'amount', 'method', place=place)
+
+
+def by_change(place, methods):
+    """Right matches of all, and processor time, of methods by change."""
+    found, lines = view_rows(place), []
+    order = ('zoom', 'rotation', 'tilt', 'zoom and rotation', 'tilt and rotation')
+    for kind, amount in sorted({key[:2] for key in found if key[2] == methods[-1]}, key=lambda key: (order.index(key[0]), float(key[1].split()[0]))):
+        of = [found[kind, amount, method] for method in methods]
+        lines.append(['%s %s' % (kind, amount), *itertools.chain(*(('%.0f of %.0f' % (float(row['right']), float(row['matches'])), '%.0f' % float(row['milliseconds'])) for row in of))])
+    return table(['', *itertools.chain(*((method, 'ms') for method in methods))], lines)
+
+
+def views():
+    return by_change('photographs', ('matchViews', 'upright chain', 'ORB', 'SIFT'))
+
+
+def views_chosen_on():
+    return by_change('chosen on', ('matchViews', 'upright chain', 'ORB', 'SIFT'))
+
+
+def views_affine():
+    return by_change('some photographs', ('matchViews', 'AffineFeature'))
+
+
+def views_run():
+    """What was matched, where, and what was made of unrelated images."""
+    found, apart = view_rows('photographs'), view_rows('unrelated')
+    one, sift = apart['unrelated', '', 'matchViews'], apart['unrelated', '', 'SIFT']
+    run, = (row for row in rows('runs.csv') if row['file'] == 'views.csv')
+    changed = [row for place in ('photographs', 'chosen on') for key, row in view_rows(place).items() if key[2] == 'matchViews']
+    return ('%s photographs of scenes that nothing was chosen on, at %s on %s (%s).\nOf %s pairs of images of different sets `matchViews` calls %.0f significant, '
+            'in %.0f ms on average. Detection, description and matching by SIFT\ntake %.0f ms of the same pairs.\nOf the %d pairs of the first two tables it calls %.0f significant; in %.0f of these most matches are wrong.' % (
+                found['zoom', '1', 'SIFT']['pairs'], run['commit'].replace(';', ' and '), run['date'], run['machine'], one['pairs'], float(one['found']) * int(one['pairs']),
+                float(one['milliseconds']), float(sift['milliseconds']), sum(int(row['pairs']) for row in changed),
+                *(sum(float(row[name]) * int(row['pairs']) for row in changed) for name in ('found', 'misled'))))
+
+
+def views_guide():
+    """The guide's sentences on matchViews: what it does, what it costs, its limits."""
+    found, few, apart = view_rows('photographs'), view_rows('some photographs'), view_rows('unrelated')
+
+    def right(kind, amount, method='matchViews'):
+        return '%.0f' % float(found[kind, amount, method]['right'])
+
+    def times(rows, method):
+        every = [float(row['milliseconds']) for key, row in rows.items() if key[2] == method and key[:2] != ('zoom', '1')]
+        return '%.0f to %.0f' % (min(every), max(every))
+    return ('`matchViews` matches two images as they are and, if these matches are not decisive, in reduced, rotated and tilted views of both.\n'
+            'Of %s photographs, the second image made by a program (warped, and darkened), it finds %s right matches on average at a quarter of the size\n'
+            '(the upright chain %s, SIFT %s), and %s at a tilt of 4 (%s and %s). It takes %.0f ms of one thread for an ordinary pair, images to matches, where the\n'
+            'chain takes %.0f; a search takes %s ms (SIFT %s; `cv::AffineFeature` with SIFT, which finds more matches of many more points,\n'
+            '%s), and %.0f ms where the images have nothing in common (SIFT %.0f). All rotations are searched, relative sizes from a quarter to four\n'
+            'times, and tilts up to 4 (`maxTilt`); the second image at twice the size leaves %s matches. Mirrored images are not found, and of a scene with strong\n'
+            'perspective perhaps one part alone. Pictures that resemble themselves rotated by 180 degrees may be matched wrongly, and called significant\n'
+            '([all figures and conditions](results/README.md#other-zoom-rotation-and-tilt)).' % (
+                found['zoom', '1', 'SIFT']['pairs'], *(right('zoom', '0.25', method) for method in ('matchViews', 'upright chain', 'SIFT')),
+                *(right('tilt', '4', method) for method in ('matchViews', 'upright chain', 'SIFT')),
+                *(float(found['zoom', '1', method]['milliseconds']) for method in ('matchViews', 'upright chain')), times(found, 'matchViews'), times(found, 'SIFT'),
+                times(few, 'AffineFeature'), *(float(apart['unrelated', '', method]['milliseconds']) for method in ('matchViews', 'SIFT')), right('zoom', '2')))
+
+
 def propagation():
     """The guide's sentence on what propagated matches bring the recommended chain."""
     found = estimates()
@@ -486,7 +550,7 @@ def photographs_of_many():
 
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
-    drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, how_sure, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
+    drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, views, views_chosen_on, views_affine, views_run, views_guide, how_sure, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
     step_by_step, fuzzing, mapped_index, scale_run, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, classic_detectors, learned_claim, learned_limit, estimator_limit, learned_guide, pose_pairs,
     detected_points, uncertainty, night, artifacts)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(

@@ -120,8 +120,16 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
                  "moved by a HOMOGRAPHY,TRANSLATION,0,", "with noise,SIMILARITY,1,"})
         EXPECT_NE(std::string::npos, aligned.find(std::string("set,still,2,") + row)) << row;
 
+    const std::string views = contents(options.out + "/views.csv");
+    for (const char* change : {"rotation,90", "rotation,180", "zoom,0.8", "tilt,1.5"})
+        EXPECT_GT(valueAfter(views, std::string("set,still,") + change + ",matchViews,1,"), 100) << change;
+    EXPECT_GT(valueAfter(views, "set,still,zoom,1,upright chain,1,"), 100);
+    EXPECT_LT(valueAfter(views, "set,still,rotation,90,upright chain,1,"), 10);
+    EXPECT_GT(valueAfter(views, "set,still,rotation,180,AffineFeature,1,"), 100);
+    EXPECT_EQ(-1, valueAfter(views, "set,still,rotation,30,AffineFeature,1,"));
+
     const std::vector<std::string> tables = {"fixed_points", "detected_points", "estimators", "alignment",
-            "matching", "robustness", "comparison"};
+            "matching", "robustness", "views", "comparison"};
     std::vector<std::string> first;
     for (const std::string& name : tables)
         first.push_back(contents(options.out + "/" + name + ".csv"));
@@ -234,6 +242,70 @@ TEST_F(EvaluationTest, keypoints_of_files_are_described)
     const std::string without = contents(options.out + "/detected_points.csv");
     EXPECT_EQ(std::string::npos, without.find("network,network"));
     EXPECT_NE(std::string::npos, without.find("network,IIB,light,170,"));
+}
+
+//! Blocks before a wall, which a step to the side moves by other amounts: epipolar lines are rows.
+TEST_F(EvaluationTest, correspondences_by_hand_are_judged_by_epipolar_lines)
+{
+    folder.makeFolder("marked/WGBS/blocks");
+    cv::RNG rng(3);
+    cv::Mat images[2];
+    for (cv::Mat& image : images)
+        image = cv::Mat(240, 320, CV_8U, cv::Scalar(90));
+    for (int i = 0; i < 900; i++)
+    {
+        const cv::Rect block(
+                rng.uniform(0, 320), rng.uniform(0, 240), rng.uniform(4, 26), rng.uniform(4, 26));
+        const cv::Scalar grey(rng.uniform(20, 230));
+        cv::rectangle(images[0], block, grey, -1);
+        cv::rectangle(images[1], block + cv::Point(i < 600 ? -4 : -14, 0), grey, -1);
+    }
+    for (int k = 0; k < 2; k++)
+        cv::imwrite(folder.path(cv::format("marked/WGBS/blocks/0%d.png", k + 1)), images[k]);
+    folder.write(
+            "marked/WGBS/blocks/corrs.txt", "100 60 90 60\n2e2 150 196 150\n100 60 90 160\n200 150 190 90\n");
+    options.roots = {folder.path("marked")};
+    options.experiments = {"wxbs"};
+    EXPECT_EQ(0, evaluate(options));
+    const std::vector<Fields> rows = readRows(options.out + "/wxbs.csv",
+            {"set", "sequence", "method", "points", "found", "matches", "within_10", "share"});
+    ASSERT_EQ(4u, rows.size());
+    for (const Fields& row : rows)  // half of them are right, to a pixel or two of 19
+    {
+        EXPECT_EQ("0.5", row[6]) << row[2];
+        EXPECT_GE(std::atof(row[7].c_str()), .42) << row[2];
+        EXPECT_LT(std::atof(row[7].c_str()), .5) << row[2];
+    }
+    options.experiments = {"fixed_points"};  // others take no image for one of a still camera
+    options.out = folder.path("others");
+    EXPECT_EQ(0, evaluate(options));
+    EXPECT_TRUE(fixedPointsRows().empty());
+
+    folder.write("marked/WGBS/blocks/corrs.txt", "100 60 90\n");
+    options.experiments = {"wxbs"};
+    EXPECT_EQ(4, evaluate(options));
+    EXPECT_TRUE(findPairs(options.roots).empty());  // which others ask for
+}
+
+TEST_F(EvaluationTest, images_of_different_sets_are_matched)
+{
+    cv::RNG rng(5);
+    for (const std::string set : {"one", "two"})
+    {
+        folder.makeFolder("unrelated/" + set + "/noise");
+        cv::Mat noise(90, 120, CV_8U);
+        rng.fill(noise, cv::RNG::UNIFORM, 0, 256);
+        cv::GaussianBlur(noise, noise, cv::Size(), 2);
+        cv::normalize(noise, noise, 0, 255, cv::NORM_MINMAX);
+        for (const char* name : {"1", "2"})
+            cv::imwrite(folder.path("unrelated/" + set + "/noise/") + name + ".png", noise);
+    }
+    options.roots = {folder.path("unrelated")};
+    options.experiments = {"views"};
+    EXPECT_EQ(0, evaluate(options));
+    const std::string table = contents(options.out + "/views.csv");
+    for (const char* pair : {"one,noise/2 and two/noise/2", "two,noise/2 and one/noise/2"})
+        EXPECT_EQ(0, valueAfter(table, std::string(pair) + ",unrelated,,matchViews,")) << pair;
 }
 
 TEST_F(EvaluationTest, mistakes_are_told)

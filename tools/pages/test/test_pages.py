@@ -39,6 +39,17 @@ class Figures(unittest.TestCase):
             row = {'set': 'tilde_webcam', 'sequence': 'courbevoie', 'image': image, 'model': model}
             self.assertEqual(summaries.alignment_place(row), places, (image, model))
 
+    def test_views_count_by_what_was_chosen_on_a_scene(self):
+        lines = ['set,sequence,kind,amount,method,found,right,matches,milliseconds', 's,wall,tilt,2,SIFT,1,4,9,1', 's,graf,tilt,2,SIFT,1,8,9,1', 's,wall,tilt,2,AffineFeature,1,9,9,1',
+                 's,boat,tilt,2,SIFT,1,0,9,1', 'tilde_webcam,courbevoie/2 and iib_demo/scene/2,unrelated,,SIFT,1,0,9,1', 's,wall/2 and t/u/2,unrelated,,SIFT,0,0,9,1']
+        with tempfile.TemporaryDirectory() as folder:
+            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
+            source.write_text('\n'.join(lines))
+            summaries.summarize_views(source, target)
+            found = {(row['place'], row['method']): (row['pairs'], row['right'], row['found'], row['misled']) for row in summaries.read(target)}
+        self.assertEqual(found, {('photographs', 'SIFT'): ('2', '6', '1', '0.5'), ('photographs', 'AffineFeature'): ('1', '9', '1', '0'), ('some photographs', 'SIFT'): ('1', '4', '1', '1'),
+                                 ('some photographs', 'AffineFeature'): ('1', '9', '1', '0'), ('chosen on', 'SIFT'): ('1', '0', '1', '1'), ('unrelated', 'SIFT'): ('1', '0', '0', '0')})
+
     def test_curves_are_of_scenes_that_nobody_was_trained_on(self):
         for row, places in ((('lights', 'street', 'light'), ['rendered']), (('lights', 'room', 'light'), []),
                             (('tilde_webcam', 's', 'light'), []), (('iib_demo', 's', 'light'), ['light']), (('o', 'wall', 'viewpoint'), [])):
