@@ -13,7 +13,9 @@ const int LEAST_NEIGHBOURS = 2;    // that agree with it
 const double LEAST_DISTANCE = 2;   // pixels; of nearer neighbours the direction is uncertain
 const double REGION = 64;          // pixels: about the side of a described region
 const size_t FEW_REGIONS = 6;
-const double EXACT = .25;  // tolerance around an estimated map
+const double ROUGH = .5;      // tolerance of matches far apart, between which depth and perspective change
+const double LEAST_FAR = .3;  // of pairs of matches far apart that agree
+const double EXACT = .25;     // tolerance around an estimated map
 
 typedef std::vector<Point2d> Points;
 
@@ -109,6 +111,24 @@ Support::Support(const Points& points1, const Points& points2)
 {
     const Support similar(points1, points2, similarityOf(someOf(points1), someOf(points2)), 2 * EXACT);
     *this = Support(points1, points2, similar.map, EXACT);
+}
+
+bool agreeFarApart(const Points& all1, const Points& all2, const Matx33d& map)
+{
+    const Points points1 = someOf(all1), points2 = someOf(all2);
+    const Matx22d linear = map.get_minor<2, 2>(0, 0);
+    int far = 0, agreeing = 0;
+    for (size_t i = 0; i < points1.size(); i++)
+        for (size_t j = 0; j < i; j++)
+        {
+            const Vec2d way = points1[j] - points1[i], moved = points2[j] - points2[i],
+                        expected = linear * way;
+            if (way.dot(way) < REGION * REGION)
+                continue;
+            far++;
+            agreeing += norm(moved - expected, NORM_L2SQR) < ROUGH * ROUGH * norm(expected, NORM_L2SQR);
+        }
+    return far > 0 && agreeing > LEAST_FAR * far;
 }
 
 bool areOneStructure(const Points& points)

@@ -26,6 +26,12 @@ struct Support
     double share() const { return (double)count / std::max(compared, 1); }
 };
 
+/** Whether matches far from each other lie as the map of neighbours has it. Else neighbours agree in small parts alone: where windows look the same
+upside down, or in a cluster beside which others agree by chance.
+@param map from points1 to points2, pixels, estimated from neighbours. */
+bool agreeFarApart(
+        const std::vector<Point2d>& points1, const std::vector<Point2d>& points2, const Matx33d& map);
+
 /** Whether matches that a search found are of one structure of an image alone, such as a round spot, which looks like others in some view:
 whether they lie in few regions as large as one that is described.
 @param points of the matches in a view, pixels. */

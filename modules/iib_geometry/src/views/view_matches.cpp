@@ -83,8 +83,11 @@ ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdin
     ViewMatches found = inImages(propagated, first, second);
     if (areOrdinary)
     {
-        const Support support(placesOf(found.points1, {}), placesOf(found.points2, {}));
-        if (support.compared >= LEAST_CLEAR && support.share() > SHARE_CLEAR)
+        const std::vector<Point2d> places1 = placesOf(found.points1, {}),
+                                   places2 = placesOf(found.points2, {});
+        const Support support(places1, places2);
+        if (support.compared >= LEAST_CLEAR && support.share() > SHARE_CLEAR &&
+                agreeFarApart(places1, places2, support.map))
         {
             found.map = support.map;
             found.logFalseAlarms = -std::numeric_limits<double>::infinity();
@@ -112,12 +115,16 @@ ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdin
     if (!areOrdinary && (areOneStructure(placesOf(propagated.points1, geometry.inliers)) ||
                                 areOneStructure(placesOf(propagated.points2, geometry.inliers))))
         return found;
+    if (geometry.count() == 0)
+        return found;
+    const std::vector<Point2d> places1 = placesOf(found.points1, geometry.inliers),
+                               places2 = placesOf(found.points2, geometry.inliers);
+    const Matx33d map = Support(places1, places2).map;
+    if (!agreeFarApart(places1, places2, map))
+        return found;
+    found.map = map;
     found.logFalseAlarms = geometry.logFalseAlarms;
     found.right = geometry.count();
-    if (found.right > 0)
-        found.map =
-                Support(placesOf(found.points1, geometry.inliers), placesOf(found.points2, geometry.inliers))
-                        .map;
     return found;
 }
 
