@@ -34,7 +34,7 @@ class WhatIsWritten(Collection):
         np.testing.assert_allclose(params, [1.2 * 400, 200, 150, 0])
         self.assertEqual(self.query('PRAGMA user_version'), [(3800,)])
         self.assertEqual(sorted(name for name, in self.query("SELECT name FROM sqlite_master WHERE type='table'") if 'iib' in name),
-                         ['iib_files', 'iib_settings'], 'what a later run grows from, without the codes')
+                         ['iib_files', 'iib_searched', 'iib_settings'], 'what a later run grows from, without the codes')
         self.assertEqual(self.files(), ['database.db', 'images'])
         # verified matches are the known shift
         points = {number: np.frombuffer(data, np.float32).reshape(rows, 4)
