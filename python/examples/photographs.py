@@ -9,7 +9,7 @@ A SCENE is a folder with images/. With poses.txt too (TUM: name, camera's centre
 the truth, else those of two methods with each other: after a robust similarity, the medians of a centre's distance in per cent
 of that to what the camera sees, and of the angle between both, and how many images are within 5 % and 5 degrees.
 
-`chain` is HessianDetector and UNIVERSAL, `SIFT` COLMAP's own, and `normalized` OpenCV's SIFT at
+`chain` is HessianDetector and UNIVERSAL, `searched` the same with a search for views (`opencv-iib colmap` verifies its pairs), `SIFT` COLMAP's own, and `normalized` OpenCV's SIFT at
 points of NormalizedDetector. All have the cameras that COLMAP infers, the pairs of the chain (each image with the twenty for
 which its codes vote), COLMAP's verification and its mapper; the largest component counts. With --relit every second image is
 darkened. With --other the images whose names fit no PATTERN become a map, with poses of the chain's reconstruction, and the
@@ -52,14 +52,16 @@ def normalized_sift(image, points):
 def make_database(method, images, points, folder, chain):
     """Points, matches and two-view geometries; `chain` is the chain's database."""
     file = folder / 'database.db'
-    if method == 'chain':
-        build_database(str(images), str(file), Options(FeatureOptions(points=points), pairs='retrieval', verify='none'))
+    if method in ('chain', 'searched'):
+        verify = 'none' if method == 'chain' else 'magsac'
+        build_database(str(images), str(file), Options(FeatureOptions(points=points), pairs='retrieval', verify=verify))
         with pycolmap.Database.open(file) as database:
             for image in database.read_all_images():
                 camera = pycolmap.infer_camera_from_image(images / image.name)
                 camera.camera_id = image.camera_id
                 database.update_camera(camera)
-        pycolmap.geometric_verification(file)
+        if verify == 'none':
+            pycolmap.geometric_verification(file)
         return
     with pycolmap.Database.open(chain) as database:
         names = {image.image_id: image.name for image in database.read_all_images()}

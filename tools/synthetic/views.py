@@ -36,7 +36,8 @@ def plan(out, scenes, seeds, size, lights, moved):
         for scene in scenes:
             views = {"map": (MAP_LIGHT, walk(SCENES[scene].path, MAP_VIEWS))}
             views.update((light, (light, beside(scene, light, seed))) for light in lights)
-            views.update((f"map_{metres:g}_{roll:g}", (MAP_LIGHT, nearer(views["map"][1], metres, roll))) for metres, roll in moved)
+            if moved:
+                views["nearer"] = MAP_LIGHT, np.concatenate([nearer(views["map"][1], *each) for each in [(0, 0), *moved]])
             for name, (light, poses) in views.items():
                 folder = out / f"{scene}_{seed}" / name
                 names = [f"{k:04d}" for k in range(len(poses))]
@@ -56,7 +57,7 @@ def main():
     parser.add_argument("--lights", nargs="*", choices=LIGHTS, default=LIGHTS, metavar="LIGHT",
                         help=f"other than noon: some of {', '.join(LIGHTS)} (all)")
     parser.add_argument("--nearer", nargs=2, type=float, action="append", default=[], metavar=("METRES", "ROLL"),
-                        help="the views of map also from so much nearer, rolled by so many degrees; may be repeated")
+                        help="a folder nearer, with the views of map as they are and moved forward, rolled clockwise; may be repeated")
     parser.add_argument("--size", type=int, nargs=2, default=SIZE, metavar=("WIDTH", "HEIGHT"))
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
     options = parser.parse_args()

@@ -30,8 +30,10 @@ Pair = tuple[int, int]
 CONNECTED = 30  # verified matches of two images by which COLMAP registers one after the other
 VOTERS, VOTING_SIZE = 100, 640  # strongest points of a view, which vote for images; pixels of its longer side
 SCALES, ANGLES = (1, .5, .25), range(0, 360, 30)
-LINKS, FAILURES = 3, 3  # after so many pairs of an image that were found, or were not, no other one is searched
-LEAST_FAILURES, SHARE_FAILURES = 16, 1 / 40  # after so many of all, or such a share of the ordinary pairs, the search ends
+MOST_TILT = 1  # steep views would take three times as long
+LINKS, FAILURES = 2, 3  # after so many pairs of an image that were found, or were not, no other one is searched
+MOST, MOST_SHARE = 40, 1 / 60  # searches: so many, or such a share of the ordinary pairs, which take a fifteenth of the time
+MOST_FAILURES, SHARE_FAILURES = 16, 1 / 100  # after so many without a result, or such a share, the search ends
 AT_ONCE = 8  # pairs that are chosen by the results of those before; of no other number, whoever does the work
 SAME_POINT = 1.5  # pixels of the image with fewer: nearer points are one
 
@@ -70,7 +72,7 @@ def describe_views(folder: str, options: FeatureOptions, job: tuple[str, bool]) 
 def search_pair(folder: str, options: FeatureOptions, names: tuple[str, str]) -> Optional[Found]:
     """None where the images do not match in any view."""
     (image_a, mask_a, scale_a), (image_b, mask_b, scale_b) = (_read(folder, options, name) for name in names)
-    found = matchViews(image_a, image_b, options.points, mask1=mask_a, mask2=mask_b)
+    found = matchViews(image_a, image_b, options.points, MOST_TILT, mask1=mask_a, mask2=mask_b)
     a, b = (found.points1 + .5) * scale_a, (found.points2 + .5) * scale_b
     inliers, matrix = magsac(a, b)
     if found.view is None or matrix is None:
@@ -130,7 +132,7 @@ def candidates(folder: str, options: FeatureOptions, names: dict[int, str], grou
 def _same_points(points: np.ndarray, keypoints: np.ndarray, radius: float) -> np.ndarray:
     """N x 2 points to numbers of M x 2 keypoints; new numbers, from M on, where none is as near as this."""
     import cv2
-    matches = cv2.BFMatcher(cv2.NORM_L2).match(np.float32(points), np.ascontiguousarray(keypoints, np.float32))
+    matches = cv2.BFMatcher(cv2.NORM_L2).match(np.ascontiguousarray(points, np.float32), np.ascontiguousarray(keypoints, np.float32))
     numbers = np.array([match.trainIdx if match.distance <= radius else -1 for match in matches])
     numbers[numbers < 0] = len(keypoints) + np.arange((numbers < 0).sum())
     return numbers
@@ -173,17 +175,18 @@ def search_pairs(database: Database, folder: str, options: FeatureOptions, any_p
         return
     home = collections.Counter(group.values()).most_common(1)[0][0]
     waiting = [pair for pair in candidates(folder, options, names, group, crew) if any_pair or database.has_pair(*pair)]
-    links, failures, failed = collections.Counter[int](), collections.Counter[int](), 0
-    most = max(LEAST_FAILURES, SHARE_FAILURES * database.counts()['pairs'])
+    links, failures = collections.Counter[int](), collections.Counter[int]()
+    outside, ordinary = sum(of != home for of in group.values()), database.counts()['pairs']
+    left, failures_left = max(MOST, MOST_SHARE * ordinary, outside), max(MOST_FAILURES, SHARE_FAILURES * ordinary)
     progress = Progress('searching', None)
 
     def wanting(pair: Pair) -> set[int]:
         return {image for image in pair if group[image] != home and links[image] < LINKS and failures[image] < FAILURES}
 
-    while failed < most:
+    while left > 0 and failures_left > 0:
         chosen: list[Pair] = []
         busy: set[int] = set()
-        waiting = [pair for pair in waiting if wanting(pair)]
+        waiting = sorted(filter(wanting, waiting), key=lambda pair: min(links[image] for image in wanting(pair)))
         for pair in waiting:
             if len(chosen) < AT_ONCE and not wanting(pair) & busy:
                 chosen.append(pair)
@@ -200,9 +203,10 @@ def search_pairs(database: Database, folder: str, options: FeatureOptions, any_p
                 database.add_not_found(*pair)
             progress.step()
         for pair in chosen:
+            left -= 1
             if database.was_found(*pair):
                 links.update(pair)
             else:
                 failures.update(pair)
-                failed += 1
+                failures_left -= 1
     progress.close()
