@@ -40,7 +40,6 @@ SAME_POINT = 1.5  # pixels of the image with fewer: nearer points are one
 
 class Found(NamedTuple):
     """Matches of two images that agree."""
-
     points: tuple[np.ndarray, np.ndarray]  #: N x 2 each, pixels as COLMAP has them
     pixels: tuple[float, float]  #: of each image, that are a pixel of the one with less detail
     fundamental: np.ndarray
@@ -133,30 +132,25 @@ def _same_points(points: np.ndarray, keypoints: np.ndarray, radius: float) -> np
     """N x 2 points to numbers of M x 2 keypoints; new numbers, from M on, where none is as near as this."""
     import cv2
     matches = cv2.BFMatcher(cv2.NORM_L2).match(np.ascontiguousarray(points, np.float32), np.ascontiguousarray(keypoints, np.float32))
-    numbers = np.array([match.trainIdx if match.distance <= radius else -1 for match in matches])
-    numbers[numbers < 0] = len(keypoints) + np.arange((numbers < 0).sum())
-    return numbers
+    return np.array([match.trainIdx if match.distance <= radius else len(keypoints) + i for i, match in enumerate(matches)])
 
 
 def add_found(database: Database, pair: Pair, found: Found) -> bool:
     """Writes the matches, and new keypoints where the image may have them; False if too few are left."""
-    sets, numbers = [database.load_keypoints(image) for image in pair], []
-    for k, points in enumerate(found.points):
-        numbers.append(_same_points(points, sets[k][:, :2], SAME_POINT * found.pixels[k]))
-    matches = np.stack(numbers, axis=1)
-    kept = np.ones(len(matches), bool)
-    for k, image in enumerate(pair):
-        kept &= np.isin(np.arange(len(matches)), np.unique(matches[:, k], return_index=True)[1])
-        if image in database.finished:
-            kept &= matches[:, k] < len(sets[k])
+    sets = [database.load_keypoints(image) for image in pair]
+    matches = np.stack([_same_points(points, keypoints[:, :2], SAME_POINT * pixels)
+                        for points, keypoints, pixels in zip(found.points, sets, found.pixels)], axis=1)
+    first_a, first_b = (np.unique(column, return_index=True)[1] for column in matches.T)
+    kept = np.intersect1d(first_a, first_b)
+    most = [len(keypoints) if image in database.finished else np.inf for image, keypoints in zip(pair, sets)]
+    kept = kept[(matches[kept] < most).all(axis=1)]
     matches = matches[kept]
     if len(matches) < MIN_INLIERS:
         return False
     for k, points in enumerate(found.points):
-        new, old = matches[:, k] >= len(sets[k]), len(sets[k])
-        matches[new, k] = old + np.arange(new.sum())
-        size = np.median(sets[k][:, 2]) * found.pixels[k]
-        rows = np.column_stack([points[kept][new], np.full((new.sum(), 2), (size, 0))])
+        new = matches[:, k] >= len(sets[k])
+        matches[new, k] = len(sets[k]) + np.arange(new.sum())
+        rows = np.column_stack([points[kept][new], np.full((new.sum(), 2), (np.median(sets[k][:, 2]) * found.pixels[k], 0))])
         sets[k] = np.concatenate([sets[k], rows.astype(np.float32)])
     database.add_found(pair, sets, matches, found.fundamental)
     return True
@@ -165,9 +159,9 @@ def add_found(database: Database, pair: Pair, found: Found) -> bool:
 def search_pairs(database: Database, folder: str, options: FeatureOptions, any_pair: bool, crew: Crew) -> None:
     """Searches pairs of images that no verified pairs connect, and writes what is found.
 
-    Which pairs are searched depends on the database alone: an interrupted run goes on with the pair where it ended.
+    An interrupted run goes on with the pair where it ended.
 
-    :param any_pair: whether pairs count that were not matched before, too.
+    :param any_pair: also pairs that were not matched before.
     """
     names, folder = {number: name for name, number in database.image_ids().items()}, os.path.abspath(folder)
     group = groups(names, database.verified_pairs(CONNECTED))
@@ -203,10 +197,7 @@ def search_pairs(database: Database, folder: str, options: FeatureOptions, any_p
                 database.add_not_found(*pair)
             progress.step()
         for pair in chosen:
-            left -= 1
-            if database.was_found(*pair):
-                links.update(pair)
-            else:
-                failures.update(pair)
-                failures_left -= 1
+            was_found = database.was_found(*pair)
+            (links if was_found else failures).update(pair)
+            left, failures_left = left - 1, failures_left - (not was_found)
     progress.close()
