@@ -123,6 +123,13 @@ class Searches(Collection):
             self.assertLess(np.median(errors), 2)
             self.assertGreater(np.count_nonzero(errors < 4), 100)
 
+    def test_images_that_show_nothing(self):
+        for name, size in (('flat.png', (300, 400)), ('small.png', (9, 9)), ('smallest.png', (1, 1))):
+            cv2.imwrite(str(self.images / name), np.full(size, 9, np.uint8))
+        counts = self.build()
+        self.assertEqual((counts['images'], counts['failed']), (7, 0))
+        self.assertEqual(self.query('SELECT DISTINCT found FROM iib_searched'), [(1,)])
+
     def test_a_search_goes_on_and_images_of_a_finished_database_keep_their_points(self):
         self.build()
         rows = self.dump()

@@ -32,7 +32,7 @@ VOTERS, VOTING_SIZE = 100, 640  # strongest points of a view, which vote for ima
 SCALES, ANGLES = (1, .5, .25), range(0, 360, 30)
 MOST_TILT = 1  # steep views would take three times as long
 LINKS, FAILURES = 2, 3  # after so many pairs of an image that were found, or were not, no other one is searched
-MOST, MOST_SHARE = 40, 1 / 60  # searches: so many, or such a share of the ordinary pairs, which take a fifteenth of the time
+MOST, MOST_SHARE = 40, 1 / 60  # searches: so many, or such a share of the ordinary pairs; one takes as long as fifteen of these
 MOST_FAILURES, SHARE_FAILURES = 16, 1 / 100  # after so many without a result, or such a share, the search ends
 AT_ONCE = 8  # pairs that are chosen by the results of those before; of no other number, whoever does the work
 SAME_POINT = 1.5  # pixels of the image with fewer: nearer points are one
@@ -138,6 +138,8 @@ def _same_points(points: np.ndarray, keypoints: np.ndarray, radius: float) -> np
 def add_found(database: Database, pair: Pair, found: Found) -> bool:
     """Writes the matches, and new keypoints where the image may have them; False if too few are left."""
     sets = [database.load_keypoints(image) for image in pair]
+    if not all(map(len, sets)):
+        return False
     matches = np.stack([_same_points(points, keypoints[:, :2], SAME_POINT * pixels)
                         for points, keypoints, pixels in zip(found.points, sets, found.pixels)], axis=1)
     first_a, first_b = (np.unique(column, return_index=True)[1] for column in matches.T)
