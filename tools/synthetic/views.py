@@ -31,7 +31,7 @@ def nearer(poses, metres, roll):
     return np.column_stack([poses[:, :3] + metres * forward, poses[:, 3:], np.full(len(poses), roll)])
 
 
-def plan(out, scenes, seeds, size, lights, moved):
+def plan(out, scenes, seeds, size, lights=tuple(LIGHTS), moved=()):
     for seed in seeds:
         for scene in scenes:
             views = {"map": (MAP_LIGHT, walk(SCENES[scene].path, MAP_VIEWS))}

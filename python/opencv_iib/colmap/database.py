@@ -248,9 +248,9 @@ class Database(contextlib.AbstractContextManager['Database']):
         """Whether the pair was matched, also without a match."""
         return self._db.execute('SELECT 1 FROM matches WHERE pair_id=?', (pair_id(a, b),)).fetchone() is not None
 
-    def pairs(self) -> Iterator[tuple[int, int]]:
-        """Image ids of the pairs that have matches."""
-        for key, in self._db.execute('SELECT pair_id FROM matches WHERE rows > 0 ORDER BY pair_id'):
+    def pairs(self, least: int = 1) -> Iterator[tuple[int, int]]:
+        """Image ids of the pairs that have at least so many matches."""
+        for key, in self._db.execute('SELECT pair_id FROM matches WHERE rows >= ? ORDER BY pair_id', (least,)):
             yield divmod(key, MAX_IMAGE_ID)
 
     def add_pair(self, a: int, b: int, matches: np.ndarray, inliers: Optional[np.ndarray] = None,

@@ -167,7 +167,7 @@ def search_pairs(database: Database, folder: str, options: FeatureOptions, any_p
     """
     names, folder = {number: name for name, number in database.image_ids().items()}, os.path.abspath(folder)
     group = groups(names, database.verified_pairs(CONNECTED))
-    if len(set(group.values())) < 2:
+    if len(set(group.values())) < 2 or not (any_pair or any(group[a] != group[b] for a, b in database.pairs(least=0))):
         return
     home = collections.Counter(group.values()).most_common(1)[0][0]
     waiting = [pair for pair in candidates(folder, options, names, group, crew) if any_pair or database.has_pair(*pair)]
