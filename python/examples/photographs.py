@@ -9,7 +9,8 @@ A SCENE is a folder with images/. With poses.txt too (TUM: name, camera's centre
 the truth, else those of two methods with each other: after a robust similarity, the medians of a centre's distance in per cent
 of that to what the camera sees, and of the angle between both, and how many images are within 5 % and 5 degrees.
 
-`chain` is HessianDetector and UNIVERSAL, `SIFT` COLMAP's own, and `normalized` OpenCV's SIFT at
+`chain` is HessianDetector and UNIVERSAL, `searched` and `unsearched` the same with the pairs that `opencv-iib colmap` verifies, with and
+without its search for other views, `SIFT` COLMAP's own, and `normalized` OpenCV's SIFT at
 points of NormalizedDetector. All have the cameras that COLMAP infers, the pairs of the chain (each image with the twenty for
 which its codes vote), COLMAP's verification and its mapper; the largest component counts. With --relit every second image is
 darkened. With --other the images whose names fit no PATTERN become a map, with poses of the chain's reconstruction, and the
@@ -52,14 +53,16 @@ def normalized_sift(image, points):
 def make_database(method, images, points, folder, chain):
     """Points, matches and two-view geometries; `chain` is the chain's database."""
     file = folder / 'database.db'
-    if method == 'chain':
-        build_database(str(images), str(file), Options(FeatureOptions(points=points), pairs='retrieval', verify='none'))
+    if method in ('chain', 'searched', 'unsearched'):
+        verify = 'none' if method == 'chain' else 'magsac'
+        build_database(str(images), str(file), Options(FeatureOptions(points=points), pairs='retrieval', verify=verify, search=method == 'searched'))
         with pycolmap.Database.open(file) as database:
             for image in database.read_all_images():
                 camera = pycolmap.infer_camera_from_image(images / image.name)
                 camera.camera_id = image.camera_id
                 database.update_camera(camera)
-        pycolmap.geometric_verification(file)
+        if verify == 'none':
+            pycolmap.geometric_verification(file)
         return
     with pycolmap.Database.open(chain) as database:
         names = {image.image_id: image.name for image in database.read_all_images()}
@@ -89,7 +92,7 @@ def reconstruct(method, images, points, work):
         found = pycolmap.incremental_mapping(folder / 'database.db', images, folder,
                                              {'random_seed': 1, 'extract_colors': False, **FASTER})
         (folder / 'model').mkdir()
-        max(found.values(), key=lambda model: model.num_reg_images()).write(folder / 'model')
+        max(found.values(), key=lambda model: model.num_reg_images(), default=pycolmap.Reconstruction()).write(folder / 'model')
     sizes = sorted((pycolmap.Reconstruction(each).num_reg_images() for each in folder.iterdir() if each.name.isdigit()), reverse=True)
     return pycolmap.Reconstruction(folder / 'model'), sizes[1:]
 
@@ -115,8 +118,11 @@ def told(found, truth):
     both = sorted(set(found) & set(truth))
     true, seen = np.array([truth[n].translation for n in both]), np.array([found[n][0].translation for n in both])
     depths = np.array([found[name][1] for name in both])
-    limit = {'max_error': .02 * np.median(depths), 'random_seed': 1}
-    moved = pycolmap.estimate_sim3d_robust(true, seen, limit)['tgt_from_src']
+    limit = {'max_error': .02 * np.median(depths) if both else 1, 'random_seed': 1}
+    similarity = pycolmap.estimate_sim3d_robust(true, seen, limit) if both else None
+    if similarity is None:
+        return ['', '', f'0 of {len(both)}']
+    moved = similarity['tgt_from_src']
     away = np.linalg.norm(moved.scale * true @ moved.rotation.matrix().T + moved.translation - seen, axis=1) / depths
     turned = np.degrees([(moved.rotation * truth[n].rotation).angle_to(found[n][0].rotation) for n in both])
     return [f'{100 * np.median(away):.2f}', f'{np.median(turned):.2f}', f'{np.count_nonzero((away < .05) & (turned < 5))} of {len(both)}']

@@ -159,6 +159,8 @@ def _parser() -> _Parser:
                          help=f'{", ".join(PAIRS)}, or a file with two names a line (%(default)s)')
     command.add_argument('--neighbours', type=int, default=20, metavar='N', help='of sequential, retrieval and gps (%(default)s)')
     command.add_argument('--ratio', type=float, default=.9, help='ratio test beside the cross-check (%(default)s; 1: none)')
+    command.add_argument('--no-search', action='store_false', dest='search',
+                         help='do not look for other zooms, rotations and tilts where images match none as they are')
     _choice(command, '--verify', VERIFIERS, str.lower, default='auto', help='two-view geometry (%(default)s)')
     command.add_argument('--workers', type=int, metavar='N', help='threads (one a core)')
     command.add_argument('--scheduler', metavar='ADDRESS', help="have the workers of Dask's scheduler there do it")

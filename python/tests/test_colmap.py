@@ -14,7 +14,7 @@ from collection import Collection
 from opencv_iib import _core, _parallel
 from opencv_iib._files import only_writer
 from opencv_iib._two_views import magsac
-from opencv_iib.colmap import SettingsChanged, build_database, pipeline
+from opencv_iib.colmap import SettingsChanged, build_database, pipeline, search
 from opencv_iib.colmap.database import MAX_IMAGE_ID, Database, pair_id
 from support import cv2, optional, run_command, texture
 
@@ -34,7 +34,7 @@ class WhatIsWritten(Collection):
         np.testing.assert_allclose(params, [1.2 * 400, 200, 150, 0])
         self.assertEqual(self.query('PRAGMA user_version'), [(3800,)])
         self.assertEqual(sorted(name for name, in self.query("SELECT name FROM sqlite_master WHERE type='table'") if 'iib' in name),
-                         ['iib_files', 'iib_settings'], 'what a later run grows from, without the codes')
+                         ['iib_files', 'iib_searched', 'iib_settings'], 'what a later run grows from, without the codes')
         self.assertEqual(self.files(), ['database.db', 'images'])
         # verified matches are the known shift
         points = {number: np.frombuffer(data, np.float32).reshape(rows, 4)
@@ -88,6 +88,64 @@ class WhatIsWritten(Collection):
         counts = self.build(verify='colmap')
         self.assertEqual((counts['pairs'], counts['verified pairs']), (3, 3))
         self.assertEqual(self.query('SELECT COUNT(*) FROM descriptors'), [(0,)])
+
+
+class Searches(Collection):
+
+    def setUp(self):
+        super().setUp()
+        world = cv2.resize(texture(320, 240, seed=3), (1280, 960), interpolation=cv2.INTER_CUBIC)
+        maps = {'a.png': (.45, 0), 'b.png': (.45, 5), 'near.png': (1.6, 0), 'more/c.png': (.5, 130)}
+        self.maps = {}
+        for name, (zoom, angle) in maps.items():
+            self.maps[name] = np.vstack([cv2.getRotationMatrix2D((960, 480), angle, zoom) + [[0, 0, -710], [0, 0, -280]], [0, 0, 1]])
+            cv2.imwrite(str(self.images / name), cv2.warpAffine(world, self.maps[name][:2], (500, 400), flags=cv2.INTER_AREA))
+
+    def test_images_from_near_and_far_and_rotated_are_joined(self):
+        tables = [f'SELECT * FROM {table} ORDER BY 1' for table in ('keypoints', 'matches', 'two_view_geometries')]
+        self.assertEqual(self.build(search=False)['verified pairs'], 3)  # of near.png by chance of few points
+        points, *before = map(self.query, tables)
+        self.assertGreaterEqual(self.build(force=True)['verified pairs'], 5)
+        keypoints = {row[0]: np.frombuffer(row[3], np.float32).reshape(row[1:3]) for row in self.query(tables[0])}
+        for number, rows, _, data in points:
+            self.assertEqual(keypoints[number][:rows].tobytes(), data)
+        for old, table in zip(before, tables[1:]):
+            self.assertIn(old[0], self.query(table), 'an ordinary pair')
+        names = dict(self.query('SELECT image_id, name FROM images'))
+        searched = self.query('SELECT pair_id, rows, data FROM two_view_geometries NATURAL JOIN iib_searched')
+        self.assertEqual(len(searched), 4)
+        for key, rows, data in searched:
+            a, b = divmod(key, MAX_IMAGE_ID)
+            matches = np.frombuffer(data, np.uint32).reshape(-1, 2).T
+            self.assertEqual([len(np.unique(side)) for side in matches], [rows, rows])
+            moved = cv2.transform(keypoints[a][None, matches[0], :2] - .5, (self.maps[names[b]] @ np.linalg.inv(self.maps[names[a]]))[:2])[0]
+            errors = np.linalg.norm(moved - keypoints[b][matches[1], :2] + .5, axis=1)
+            self.assertLess(np.median(errors), 2)
+            self.assertGreater(np.count_nonzero(errors < 4), 100)
+
+    def test_images_that_show_nothing(self):
+        for name, size in (('flat.png', (300, 400)), ('small.png', (9, 9)), ('smallest.png', (1, 1))):
+            cv2.imwrite(str(self.images / name), np.full(size, 9, np.uint8))
+        counts = self.build()
+        self.assertEqual((counts['images'], counts['failed']), (7, 0))
+        self.assertEqual(self.query('SELECT DISTINCT found FROM iib_searched'), [(1,)])
+
+    def test_a_search_goes_on_and_images_of_a_finished_database_keep_their_points(self):
+        self.build()
+        rows = self.dump()
+        with self.ended_in(search, 'magsac', 3):
+            self.build(workers=1)
+        self.build()
+        self.assertEqual(self.dump(), rows)
+        near = (self.images / 'near.png').rename(self.folder / 'near.png')
+        self.build()
+        points = 'SELECT image_id, rows FROM keypoints WHERE image_id < 4'
+        before = self.query(points)
+        near.rename(self.images / 'near.png')
+        self.assertGreater(self.build()['verified pairs'], 4)
+        self.assertEqual(self.query(points), before)
+        with mock.patch.object(search, 'search_pair', side_effect=AssertionError):
+            self.build()
 
 
 class Runs(Collection):

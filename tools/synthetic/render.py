@@ -31,7 +31,7 @@ OUTPUT = {IMAGE: ["+FN8", "+A0.15", "+AM1", "+R2", "-J"], DEPTH: ["+FN16", "-A"]
 def povray(scene, mode, light, pose, size, output=None, seed=0):
     """height x width x 3, BGR, 8U for a picture; height x width, 16U for depth and 8U for labels."""
     width, height = size
-    declared = dict(zip(("CamX", "CamY", "CamZ", "Yaw", "Pitch"), pose), Mode=mode, Light=LIGHTS[light], Seed=seed,
+    declared = dict(zip(("CamX", "CamY", "CamZ", "Yaw", "Pitch", "Roll"), [*pose, 0]), Mode=mode, Light=LIGHTS[light], Seed=seed,
                     Focal=intrinsics(scene, width, height)[0, 0])
     with tempfile.TemporaryDirectory() as folder:
         picture = os.path.join(folder, "frame.png")

@@ -13,7 +13,7 @@ NOISE = {"night": 6.0, "dusk": 4.0, "fog": 3.0, "wet": 2.0}
 NOISE_BY_DAY = 1.2
 
 # A camera stands at x, y, z (metres; x right, y up, z forward) and looks along yaw (degrees from +z
-# towards +x) and pitch (degrees upward), without roll.
+# towards +x) and pitch (degrees upward). A sixth number is the roll, degrees clockwise; without it, the camera is level.
 Scene = namedtuple("Scene", "focal still path lights")  # focal length in picture widths
 
 OUTDOOR = ["noon", "morning", "dusk", "night", "overcast", "fog", "winter"]
@@ -52,9 +52,10 @@ def intrinsics(scene, width, height):
 
 def extrinsics(pose):
     """3x4 [R|t] from the world (x right, y DOWN, z forward: the scene files' y negated) to the camera."""
-    yaw, pitch = np.radians(pose[3:])
+    yaw, pitch, roll = np.radians([*pose[3:], 0][:3])
     forward = np.array([np.sin(yaw) * np.cos(pitch), np.sin(pitch), np.cos(yaw) * np.cos(pitch)])
-    right = np.array([np.cos(yaw), 0, -np.sin(yaw)])
+    level = np.array([np.cos(yaw), 0, -np.sin(yaw)])
+    right = np.cos(roll) * level - np.sin(roll) * np.cross(forward, level)
     down = -np.cross(forward, right)
     rotation = np.stack([right, down, forward]) * [1, -1, 1]
     centre = np.asarray(pose[:3]) * [1, -1, 1]

@@ -41,7 +41,7 @@ def project(point, pose):
 
 
 class KnownGeometry(unittest.TestCase):
-    poses = [(0, 1, 0, 0, 0), (0.3, 0.7, 1.0, -8.0, -3.0), (-3.0, 2.0, 0.5, 25.0, -9.0)]
+    poses = [(0, 1, 0, 0, 0), (0.3, 0.7, 1.0, -8.0, -3.0), (-3.0, 2.0, 0.5, 25.0, -9.0, 20.0)]
 
     def test_depth_of_a_plane_is_its_distance_along_the_axis(self):
         for pose in self.poses:

@@ -9,7 +9,7 @@ import numpy as np
 
 from localization import MAP_LIGHT, SIZE, cameras, tum
 from render import IMAGE, Task, render_all, run_quickly, start, write_text
-from scenes import SCENES, walk
+from scenes import SCENES, extrinsics, walk
 
 LIGHTS = ["night", "dusk", "winter"]
 MAP_VIEWS, VIEWS = 5, 3  # pictures at noon along the walk, and of each other light beside it
@@ -25,11 +25,19 @@ def beside(scene, light, seed):
     return poses
 
 
-def plan(out, scenes, seeds, size):
+def nearer(poses, metres, roll):
+    """N x 6: poses moved along their view, with a roll in degrees."""
+    forward = np.array([extrinsics(pose)[2, :3] for pose in poses]) * [1, -1, 1]
+    return np.column_stack([poses[:, :3] + metres * forward, poses[:, 3:], np.full(len(poses), roll)])
+
+
+def plan(out, scenes, seeds, size, lights=tuple(LIGHTS), moved=()):
     for seed in seeds:
         for scene in scenes:
             views = {"map": (MAP_LIGHT, walk(SCENES[scene].path, MAP_VIEWS))}
-            views.update((light, (light, beside(scene, light, seed))) for light in LIGHTS)
+            views.update((light, (light, beside(scene, light, seed))) for light in lights)
+            if moved:
+                views["nearer"] = MAP_LIGHT, np.concatenate([nearer(views["map"][1], *each) for each in [(0, 0), *moved]])
             for name, (light, poses) in views.items():
                 folder = out / f"{scene}_{seed}" / name
                 names = [f"{k:04d}" for k in range(len(poses))]
@@ -46,11 +54,15 @@ def main():
                         help=f"some of: {', '.join(SCENES)} (all)")
     parser.add_argument("--seed", nargs="+", type=int, default=[1, 2, 3],
                         help="of the instances; 0 is the scene of the other programs (1 2 3)")
+    parser.add_argument("--lights", nargs="*", choices=LIGHTS, default=LIGHTS, metavar="LIGHT",
+                        help=f"other than noon: some of {', '.join(LIGHTS)} (all)")
+    parser.add_argument("--nearer", nargs=2, type=float, action="append", default=[], metavar=("METRES", "ROLL"),
+                        help="a folder nearer, with the views of map as they are and moved forward, rolled clockwise; may be repeated")
     parser.add_argument("--size", type=int, nargs=2, default=SIZE, metavar=("WIDTH", "HEIGHT"))
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
     options = parser.parse_args()
     size = tuple(options.size)
-    render_all(list(plan(options.out, options.scenes, options.seed, size)), size, options.jobs, run_quickly)
+    render_all(list(plan(options.out, options.scenes, options.seed, size, options.lights, options.nearer)), size, options.jobs, run_quickly)
 
 
 if __name__ == "__main__":

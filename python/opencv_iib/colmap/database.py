@@ -42,6 +42,7 @@ CREATE TABLE IF NOT EXISTS two_view_geometries (pair_id INTEGER PRIMARY KEY NOT 
 CREATE TABLE IF NOT EXISTS iib_codes (image_id INTEGER PRIMARY KEY NOT NULL, rows INTEGER NOT NULL,
   cols INTEGER NOT NULL, data BLOB);
 CREATE TABLE IF NOT EXISTS iib_files (name TEXT PRIMARY KEY NOT NULL, stamp TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS iib_searched (pair_id INTEGER PRIMARY KEY NOT NULL, found INTEGER NOT NULL);
 '''
 
 #: COLMAP's names of camera models, by their numbers.
@@ -94,6 +95,8 @@ class Database(contextlib.AbstractContextManager['Database']):
         :raises FileExistsError: for a file that no such run has left.
         """
         self.path, self.partial, self.force, self._finished = path, path + '.partial', force, False
+        self.changed = True  #: whether it may hold other images or pairs than the finished database
+        self.finished: set[int] = set()  #: images of that one, which keep their number of keypoints for reconstructions that are there
         try:
             self._open(settings)
         except SettingsChanged:
@@ -102,8 +105,12 @@ class Database(contextlib.AbstractContextManager['Database']):
             remove_logs(self.partial)
             os.truncate(self.partial, 0)  # the same file: it may be locked
             self._open(settings)
-        if not force and os.path.exists(path) and not self.stamps():
-            self._grow()
+        if not force and os.path.exists(path):
+            self._db.execute('ATTACH ? AS old', (os.fsencode(path),))
+            if not self.stamps():
+                self._grow()
+            self.finished = {image for image, in self._db.execute('SELECT image_id FROM old.images')}
+            self._db.execute('DETACH old')
 
     def _open(self, settings: dict[str, Any]) -> None:
         self._db = open_partial(self.partial, 'iib_settings')
@@ -125,13 +132,13 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     def _grow(self) -> None:
         """Takes what the finished database holds, but not what a newer COLMAP has made of it when it opened it."""
-        self._db.execute('ATTACH ? AS old', (os.fsencode(self.path),))
         with self._transaction():
             for table, columns in (('cameras', 'camera_id, model, width, height, params, prior_focal_length'), ('images', 'image_id, name, camera_id'),
                                    ('keypoints', 'image_id, rows, cols, data'), ('matches', 'pair_id, rows, cols, data'),
-                                   ('two_view_geometries', 'pair_id, rows, cols, data, config, F, E, H, qvec, tvec'), ('iib_files', 'name, stamp')):
+                                   ('two_view_geometries', 'pair_id, rows, cols, data, config, F, E, H, qvec, tvec'), ('iib_files', 'name, stamp'),
+                                   ('iib_searched', 'pair_id, found')):
                 self._db.execute(f'INSERT INTO {table} ({columns}) SELECT {columns} FROM old.{table}')
-        self._db.execute('DETACH old')
+        self.changed = False
 
     def __exit__(self, *exc: Any) -> None:
         """Closes the file, and removes it if there is nothing to go on from."""
@@ -165,6 +172,7 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     def forget(self, name: str) -> None:
         """Removes an image and its pairs."""
+        self.changed = True
         with self._transaction():
             self._remove(name)
 
@@ -174,7 +182,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         self._db.execute('DELETE FROM iib_files WHERE name=?', (name,))
         for table in ('images', 'keypoints', 'iib_codes'):
             self._db.execute(f'DELETE FROM {table} WHERE image_id=?', (image,))
-        for table in ('matches', 'two_view_geometries'):
+        for table in ('matches', 'two_view_geometries', 'iib_searched'):
             self._db.execute(f'DELETE FROM {table} WHERE ? IN (pair_id / {MAX_IMAGE_ID}, pair_id % {MAX_IMAGE_ID})', (image,))
         free = self._db.execute('DELETE FROM cameras WHERE camera_id=? AND camera_id NOT IN (SELECT camera_id FROM images)', (camera,)).rowcount
         return image, camera if free else None
@@ -192,7 +200,7 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     def add_codes(self, image: int, keypoints: np.ndarray, codes: np.ndarray) -> bool:
         """Of an image that was described in an earlier run; False, and nothing is added, if its keypoints are others now."""
-        same = np.array_equal(self.load_keypoints(image), keypoints)
+        same = np.array_equal(self.load_keypoints(image)[:len(keypoints)], keypoints)  # then those of searches
         if same:
             self._db.execute('INSERT INTO iib_codes VALUES (?, ?, ?, ?)', (image, *codes.shape, codes.tobytes()))
         return same
@@ -207,6 +215,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         :param keypoints: N x 4 float32: x, y (pixels; the centre of the first pixel is .5), scale, angle (radians).
         :param codes: N x bytes uint8.
         """
+        self.changed = True
         values = MODELS.index(model), width, height, np.array(params, np.float64).tobytes(), int(prior)
         with self._transaction():
             number, free = self._remove(name)
@@ -239,9 +248,9 @@ class Database(contextlib.AbstractContextManager['Database']):
         """Whether the pair was matched, also without a match."""
         return self._db.execute('SELECT 1 FROM matches WHERE pair_id=?', (pair_id(a, b),)).fetchone() is not None
 
-    def pairs(self) -> Iterator[tuple[int, int]]:
-        """Image ids of the pairs that have matches."""
-        for key, in self._db.execute('SELECT pair_id FROM matches WHERE rows > 0 ORDER BY pair_id'):
+    def pairs(self, least: int = 1) -> Iterator[tuple[int, int]]:
+        """Image ids of the pairs that have at least so many matches."""
+        for key, in self._db.execute('SELECT pair_id FROM matches WHERE rows >= ? ORDER BY pair_id', (least,)):
             yield divmod(key, MAX_IMAGE_ID)
 
     def add_pair(self, a: int, b: int, matches: np.ndarray, inliers: Optional[np.ndarray] = None,
@@ -256,18 +265,50 @@ class Database(contextlib.AbstractContextManager['Database']):
             a, b, matches = b, a, matches[:, ::-1]
             inliers = None if inliers is None else inliers[:, ::-1]
             fundamental = None if fundamental is None else fundamental.T
-        key = pair_id(a, b)
+        self.changed = True
         with self._transaction():
-            self._db.execute('INSERT INTO matches VALUES (?, ?, 2, ?)',
-                             (key, len(matches), np.ascontiguousarray(matches, np.uint32).tobytes()))
-            if inliers is not None:
-                zero = np.zeros((3, 3))
-                matrix = zero if fundamental is None else np.ascontiguousarray(fundamental, np.float64)
-                self._db.execute('INSERT INTO two_view_geometries (pair_id, rows, cols, data, config, F, E, H, qvec, tvec) '
-                                 'VALUES (?, ?, 2, ?, ?, ?, ?, ?, ?, ?)',
-                                 (key, len(inliers), np.ascontiguousarray(inliers, np.uint32).tobytes(),
-                                  UNCALIBRATED if len(inliers) else 0, matrix.tobytes(), zero.tobytes(),
-                                  zero.tobytes(), np.array([1., 0, 0, 0]).tobytes(), np.zeros(3).tobytes()))
+            self._write_pair(pair_id(a, b), matches, inliers, fundamental)
+
+    def _write_pair(self, key: int, matches: np.ndarray, inliers: Optional[np.ndarray], fundamental: Optional[np.ndarray]) -> None:
+        self._db.execute('INSERT OR REPLACE INTO matches VALUES (?, ?, 2, ?)',
+                         (key, len(matches), np.ascontiguousarray(matches, np.uint32).tobytes()))
+        if inliers is not None:
+            zero = np.zeros((3, 3))
+            matrix = zero if fundamental is None else np.ascontiguousarray(fundamental, np.float64)
+            self._db.execute('INSERT OR REPLACE INTO two_view_geometries (pair_id, rows, cols, data, config, F, E, H, qvec, tvec) '
+                             'VALUES (?, ?, 2, ?, ?, ?, ?, ?, ?, ?)',
+                             (key, len(inliers), np.ascontiguousarray(inliers, np.uint32).tobytes(),
+                              UNCALIBRATED if len(inliers) else 0, matrix.tobytes(), zero.tobytes(),
+                              zero.tobytes(), np.array([1., 0, 0, 0]).tobytes(), np.zeros(3).tobytes()))
+
+    # Pairs that were searched
+
+    def verified_pairs(self, least: int) -> Iterator[tuple[int, int]]:
+        """Image ids of the pairs that at least so many verified matches of the images as they are connect."""
+        for key, in self._db.execute('SELECT pair_id FROM two_view_geometries WHERE rows >= ? AND pair_id NOT IN '
+                                     '(SELECT pair_id FROM iib_searched) ORDER BY pair_id', (least,)):
+            yield divmod(key, MAX_IMAGE_ID)
+
+    def was_found(self, a: int, b: int) -> Optional[bool]:
+        """None if the pair was not searched."""
+        row = self._db.execute('SELECT found FROM iib_searched WHERE pair_id=?', (pair_id(a, b),)).fetchone()
+        return row and bool(row[0])
+
+    def add_not_found(self, a: int, b: int) -> None:
+        """A pair that was searched keeps the matches that it has."""
+        self._db.execute('INSERT INTO iib_searched VALUES (?, 0)', (pair_id(a, b),))
+
+    def add_found(self, pair: tuple[int, int], keypoints: Sequence[np.ndarray], matches: np.ndarray, fundamental: np.ndarray) -> None:
+        """Matches that a search has found, in place of those that the pair has: one transaction.
+
+        :param pair: the smaller number first.
+        :param keypoints: of both images: those that they have, then new ones.
+        """
+        with self._transaction():
+            for image, rows in zip(pair, keypoints):
+                self._db.execute('UPDATE keypoints SET rows=?, data=? WHERE image_id=?', (len(rows), rows.tobytes(), image))
+            self._write_pair(pair_id(*pair), matches, matches, fundamental)
+            self._db.execute('INSERT INTO iib_searched VALUES (?, 1)', (pair_id(*pair),))
 
     def counts(self) -> dict[str, int]:
         """Images, keypoints, pairs that were matched, those with matches, matches, verified pairs and verified matches."""

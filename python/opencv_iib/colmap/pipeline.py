@@ -22,6 +22,7 @@ from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib._two_views import magsac
 from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged, check_settings, settings_of
+from opencv_iib.colmap.search import search_pairs
 from opencv_iib.colmap.verify import colmap_binary, matches_importer
 from opencv_iib.features import FeatureOptions, Features, to_colmap
 from opencv_iib.matcher import HierarchicalMatcher
@@ -43,6 +44,7 @@ class Options:
     pairs: Path = 'exhaustive'  #: one of PAIRS, or the name of a file with two names a line
     neighbours: int = 20  #: images that each is paired with (sequential, retrieval, gps)
     ratio: float = .9  #: ratio test, as HierarchicalMatcher.setMaxRatio; 1: none. Matches are always mutual.
+    search: bool = True  #: search pairs at other zooms, rotations and tilts where images would stay unconnected; not if verify is none
     verify: str = 'auto'  #: one of VERIFIERS; auto: COLMAP's program if it is there, else MAGSAC
 
     def __post_init__(self) -> None:
@@ -335,6 +337,8 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
         describe_again(target, images, names, options, sizes, crew)
         match_pairs(target, list_pairs(target, images, names, options, sizes), options.ratio, sizes, verify, crew)
         verify_pairs(target, binary, log)
+        if options.search and verify != 'none' and target.changed:
+            search_pairs(target, images, options.features, options.pairs == 'retrieval', crew)
         counts = {**target.counts(), 'failed': failed, **({'lines left out': left_out} if left_out else {})}
         target.finish()
     return counts
