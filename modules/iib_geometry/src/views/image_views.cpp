@@ -11,10 +11,11 @@ const int FEW = 300;       // points of a view by which it is judged
 const double MARGIN = .1;  // of an image's size, around the part that the other one shows
 const int SEARCHED = 640;  // pixels of the longer side of an image that is searched
 
-Ptr<IIBDescriptorExtractor> extractorOf(int points)
+Ptr<IIBDescriptorExtractor> extractorOf(int points, bool upright)
 {
     const Ptr<IIBDescriptorExtractor> extractor = IIBDescriptorExtractor::createRecommended(points);
-    extractor->setOrientation(IIBDescriptorExtractor::ORIENTATION_KEYPOINT);
+    if (!upright)
+        extractor->setOrientation(IIBDescriptorExtractor::ORIENTATION_KEYPOINT);
     return extractor;
 }
 
@@ -44,7 +45,7 @@ std::shared_ptr<const SeenView> ImageViews::look(const View& view, float angle, 
     const std::shared_ptr<SeenView> found = std::make_shared<SeenView>();
     found->fromImage = view.fromImage(size());
     const Mat pixels = view.pixels(image_);
-    const Ptr<IIBDescriptorExtractor> extractor = extractorOf(maxFeatures_);
+    const Ptr<IIBDescriptorExtractor> extractor = extractorOf(maxFeatures_, angle < 0);
     extractor->detect(pixels, found->keypoints, mask);
     setAngle(found->keypoints, angle);
     extractor->compute(pixels, found->keypoints, found->codes);
@@ -110,7 +111,7 @@ std::vector<Described> ImageViews::describedAt(const View& view, const std::vect
         baseMask_ = mask_.empty() ? Mat() : searched().mask(size(), mask_);
     }
     const Mat pixels = view.pixels(base_);
-    const Ptr<IIBDescriptorExtractor> extractor = extractorOf(FEW);
+    const Ptr<IIBDescriptorExtractor> extractor = extractorOf(FEW, false);
     std::vector<KeyPoint> keypoints, all;
     extractor->detect(pixels, keypoints, view.mask(base_.size(), baseMask_));
     for (float angle : angles)

@@ -7,11 +7,12 @@
 namespace cv::iib {
 namespace {
 
-const size_t MOST_COMPARED = 250;  // matches
-const size_t NEIGHBOURS = 10;      // of a match, in the first image
-const int LEAST_NEIGHBOURS = 2;    // that agree with it
-const double LEAST_DISTANCE = 2;   // pixels; of nearer neighbours the direction is uncertain
-const double REGION = 64;          // pixels: about the side of a described region
+const size_t MANY = 250,
+             FEW = 80;            // matches that are compared: of which few may be right, of which most are
+const size_t NEAREST = 10;        // neighbours of a match, in the first image
+const int LEAST_NEIGHBOURS = 2;   // that agree with it
+const double LEAST_DISTANCE = 2;  // pixels; of nearer neighbours the direction is uncertain
+const double REGION = 64;         // pixels: about the side of a described region
 const size_t FEW_REGIONS = 6;
 const double ROUGH = .5;      // tolerance of matches far apart, between which depth and perspective change
 const double LEAST_FAR = .3;  // of pairs of matches far apart that agree
@@ -20,18 +21,21 @@ const double EXACT = .25;     // tolerance around an estimated map
 typedef std::vector<Point2d> Points;
 
 //! Evenly, where there are many.
-Points someOf(const Points& points)
+Points someOf(const Points& points, size_t most)
 {
-    const size_t step = (points.size() + MOST_COMPARED - 1) / MOST_COMPARED;
+    const size_t step = (points.size() + most - 1) / most;
     Points some;
     for (size_t i = 0; i < points.size(); i += step)
         some.push_back(points[i]);
     return some;
 }
 
-//! Calls with a match and each of its nearest neighbours.
-template <typename Action> void forNeighbours(const Points& points, Action action)
+//! Indices of a point and one of those nearest to it.
+typedef std::vector<std::pair<size_t, size_t>> Neighbours;
+
+Neighbours neighboursOf(const Points& points)
 {
+    Neighbours neighbours;
     std::vector<std::pair<double, size_t>> distances;
     for (size_t i = 0; i < points.size(); i++)
     {
@@ -42,11 +46,12 @@ template <typename Action> void forNeighbours(const Points& points, Action actio
             if (way.ddot(way) > LEAST_DISTANCE * LEAST_DISTANCE)
                 distances.emplace_back(way.ddot(way), j);
         }
-        const size_t nearest = std::min(distances.size(), NEIGHBOURS);
+        const size_t nearest = std::min(distances.size(), NEAREST);
         std::nth_element(distances.begin(), distances.begin() + nearest, distances.end());
         for (size_t k = 0; k < nearest; k++)
-            action(i, distances[k].second);
+            neighbours.emplace_back(i, distances[k].second);
     }
+    return neighbours;
 }
 
 double medianOf(std::vector<double>& values)
@@ -58,65 +63,93 @@ double medianOf(std::vector<double>& values)
     return *middle;
 }
 
-//! The similarity whose two numbers are the medians of those of all neighbours.
-Matx33d similarityOf(const Points& points1, const Points& points2)
+//! Whether displacements lie along one line.
+bool isFlat(const Matx22d& moments)
 {
-    std::vector<double> along, across;
-    forNeighbours(points1, [&](size_t i, size_t j) {
-        const Point2d way = points1[j] - points1[i], moved = points2[j] - points2[i];
-        along.push_back(way.ddot(moved) / way.ddot(way));
-        across.push_back(way.cross(moved) / way.ddot(way));
-    });
-    const double c = medianOf(along), s = medianOf(across);
-    return {c, -s, 0, s, c, 0, 0, 0, 1};
+    return !(determinant(moments) > 1e-3 * trace(moments) * trace(moments));
 }
 
-}  // namespace
-
-Support::Support(const Points& all1, const Points& all2, const Matx33d& roughly, double tolerance)
-    : map(roughly)
+//! The linear map to which displacements of neighbours have the least sum of relative distances, by reweighted least squares.
+Matx33d linearOf(const Points& points1, const Points& points2, const Neighbours& neighbours)
 {
-    const Points points1 = someOf(all1), points2 = someOf(all2);
-    compared = (int)points1.size();
+    const int rounds = 5;
+    const double least = .05;  // relative distance: what is nearer counts alike
+    Matx22d linear = Matx22d::eye();
+    for (int round = 0; round < rounds; round++)
+    {
+        Matx22d moments, products;
+        for (const auto& [i, j] : neighbours)
+        {
+            const Vec2d way = points1[j] - points1[i], moved = points2[j] - points2[i];
+            const double length2 = way.dot(way),
+                         distance =
+                                 round ? std::max(norm(moved - linear * way) / std::sqrt(length2), least) : 1;
+            moments += way * way.t() * (1 / (length2 * distance));
+            products += moved * way.t() * (1 / (length2 * distance));
+        }
+        if (isFlat(moments))
+            break;
+        linear = products * moments.inv();
+    }
+    return {linear(0, 0), linear(0, 1), 0, linear(1, 0), linear(1, 1), 0, 0, 0, 1};
+}
+
+Support supportOf(const Points& points1, const Points& points2, const Neighbours& neighbours,
+        const Matx33d& roughly, double tolerance)
+{
     const Matx22d linear = roughly.get_minor<2, 2>(0, 0);
     std::vector<int> agreeing(points1.size());
     Matx22d moments, products;
-    forNeighbours(points1, [&](size_t i, size_t j) {
+    for (const auto& [i, j] : neighbours)
+    {
         const Vec2d way = points1[j] - points1[i], moved = points2[j] - points2[i], expected = linear * way;
         if (norm(moved - expected, NORM_L2SQR) > tolerance * tolerance * norm(expected, NORM_L2SQR))
-            return;
+            continue;
         agreeing[i]++;
         const double weight = 1 / way.dot(way);
         moments += weight * way * way.t();
         products += weight * moved * way.t();
-    });
-    Matx22d found = linear;
-    if (determinant(moments) > 1e-3 * trace(moments) * trace(moments))
-        found = products * moments.inv();
+    }
+    const Matx22d found = isFlat(moments) ? linear : products * moments.inv();
+    Support support;
+    support.compared = (int)points1.size();
     std::vector<double> shifts[2];
     for (size_t i = 0; i < points1.size(); i++)
     {
         if (agreeing[i] < LEAST_NEIGHBOURS)
             continue;
-        count++;
+        support.count++;
         const Vec2d shift = Vec2d(points2[i]) - found * Vec2d(points1[i]);
         shifts[0].push_back(shift[0]);
         shifts[1].push_back(shift[1]);
     }
-    map = Matx33d(found(0, 0), found(0, 1), medianOf(shifts[0]), found(1, 0), found(1, 1),
+    support.map = Matx33d(found(0, 0), found(0, 1), medianOf(shifts[0]), found(1, 0), found(1, 1),
             medianOf(shifts[1]), 0, 0, 1);
+    return support;
 }
 
-Support::Support(const Points& points1, const Points& points2)
+}  // namespace
+
+Support Support::around(const Points& all1, const Points& all2, const Matx33d& roughly, double tolerance)
 {
-    const Support similar(points1, points2, similarityOf(someOf(points1), someOf(points2)), 2 * EXACT);
-    *this = Support(points1, points2, similar.map, EXACT);
+    const Points points1 = someOf(all1, MANY), points2 = someOf(all2, MANY);
+    const Neighbours neighbours = neighboursOf(points1);
+    const Support support = supportOf(points1, points2, neighbours, roughly, tolerance);
+    return supportOf(points1, points2, neighbours, support.map, EXACT);
+}
+
+Support Support::of(const Points& all1, const Points& all2)
+{
+    const Points points1 = someOf(all1, FEW), points2 = someOf(all2, FEW);
+    const Neighbours neighbours = neighboursOf(points1);
+    return supportOf(points1, points2, neighbours, linearOf(points1, points2, neighbours), EXACT);
 }
 
 bool agreeFarApart(const Points& all1, const Points& all2, const Matx33d& map)
 {
-    const Points points1 = someOf(all1), points2 = someOf(all2);
+    const Points points1 = someOf(all1, FEW), points2 = someOf(all2, FEW);
     const Matx22d linear = map.get_minor<2, 2>(0, 0);
+    const double tolerance2 = ROUGH * ROUGH * std::abs(determinant(linear));
     int far = 0, agreeing = 0;
     for (size_t i = 0; i < points1.size(); i++)
         for (size_t j = 0; j < i; j++)
@@ -126,7 +159,7 @@ bool agreeFarApart(const Points& all1, const Points& all2, const Matx33d& map)
             if (way.dot(way) < REGION * REGION)
                 continue;
             far++;
-            agreeing += norm(moved - expected, NORM_L2SQR) < ROUGH * ROUGH * norm(expected, NORM_L2SQR);
+            agreeing += norm(moved - expected, NORM_L2SQR) < tolerance2 * way.dot(way);
         }
     return far > 0 && agreeing > LEAST_FAR * far;
 }

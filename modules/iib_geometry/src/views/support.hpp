@@ -11,17 +11,18 @@ namespace cv::iib {
 scene that is not flat; wrong ones hardly ever do. */
 struct Support
 {
-    int compared = 0;  //!< matches: all, or some where there are many
-    int count = 0;     //!< of them, that are supported
-    Matx33d map;       //!< affine, from points1 to points2: estimated from the matches that agree
+    int compared = 0;              //!< matches: all, or some where there are many
+    int count = 0;                 //!< of them, that are supported
+    Matx33d map = Matx33d::eye();  //!< affine, from points1 to points2: estimated from the matches that agree
 
-    /** @param map roughly; of it only the derivative counts.
-    @param tolerance of a neighbour's displacement, in parts of it. */
-    Support(const std::vector<Point2d>& points1, const std::vector<Point2d>& points2, const Matx33d& map,
-            double tolerance);
+    /** Of matches of which few may be right.
+    @param map roughly; of it only the derivative counts.
+    @param tolerance of a neighbour's displacement from that, in parts of it. */
+    static Support around(const std::vector<Point2d>& points1, const std::vector<Point2d>& points2,
+            const Matx33d& map, double tolerance);
 
-    //! Of matches most of which are right, between which any similarity may lead.
-    Support(const std::vector<Point2d>& points1, const std::vector<Point2d>& points2);
+    //! Of matches most of which are right, between which any affine map may lead.
+    static Support of(const std::vector<Point2d>& points1, const std::vector<Point2d>& points2);
 
     double share() const { return (double)count / std::max(compared, 1); }
 };

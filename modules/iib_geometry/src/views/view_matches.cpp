@@ -11,7 +11,7 @@ namespace cv::iib {
 namespace {
 
 const double DECISIVE = -25;    // logarithm of the number of false alarms below which nothing else is tried
-const int LEAST_CLEAR = 50;     // matches that are compared, and
+const int LEAST_CLEAR = 40;     // matches that are compared, and
 const double SHARE_CLEAR = .6;  // of them that are supported: these are decisive without a geometry
 const double SHARE_RIGHT = .8;  // of the matches that agree with a geometry, if few lead to wrong ones
 const int MOST_IMPROVED = 2;    // times
@@ -85,7 +85,7 @@ ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdin
     {
         const std::vector<Point2d> places1 = placesOf(found.points1, {}),
                                    places2 = placesOf(found.points2, {});
-        const Support support(places1, places2);
+        const Support support = Support::of(places1, places2);
         if (support.compared >= LEAST_CLEAR && support.share() > SHARE_CLEAR &&
                 agreeFarApart(places1, places2, support.map))
         {
@@ -119,7 +119,7 @@ ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdin
         return found;
     const std::vector<Point2d> places1 = placesOf(found.points1, geometry.inliers),
                                places2 = placesOf(found.points2, geometry.inliers);
-    const Matx33d map = Support(places1, places2).map;
+    const Matx33d map = Support::of(places1, places2).map;
     if (!agreeFarApart(places1, places2, map))
         return found;
     found.map = map;

@@ -15,7 +15,6 @@ const double LONGITUDES =
         72;                   // degrees, over the tilt: between tilted views (Morel and Yu 2009, section 3.2)
 const double FARTHER = .6;    // scale of the other image, to a tilted view
 const double TOLERANCE = .4;  // of displacements, by how far views are from the true one
-const double EXACT = .25;     // of displacements around the estimated map
 const int MUCH = 30;          // matches: support by which a candidate is tried at once
 const int LEAST = 4;          // matches: support by which a candidate is tried at all
 const int MOST_TRIED = 6;     // of such candidates
@@ -81,10 +80,7 @@ ViewCandidate compare(const ImageViews& first, const View& view1, const ImageVie
                                                features1[i].keypoints, matches, &DMatch::queryIdx, to1),
                                        places2 = placesOf(
                                                features2[j].keypoints, matches, &DMatch::trainIdx, to2);
-            const Support roughly(places1, places2, map, TOLERANCE);
-            if (roughly.count <= best.support)
-                continue;
-            const Support support(places1, places2, roughly.map, EXACT);
+            const Support support = Support::around(places1, places2, map, TOLERANCE);
             if (support.count > best.support)
                 best = {support.map, support.count};
         }
