@@ -67,6 +67,8 @@ Size View::shownSize(const Size& image) const
 
 Size View::sizeOf(const Size& image) const
 {
+    if (isImage())
+        return image;
     const Size shown = shownSize(image);
     return Size(std::max(cvRound(shown.width * scales[0]), LEAST_SIDE),
             std::max(cvRound(shown.height * scales[1]), LEAST_SIDE));
