@@ -20,35 +20,35 @@ public:
     //! The same first points, and the second ones in another order.
     EpipolarProblem mixed(const std::vector<int>& order) const;
 
+    //! Those of the matches that are marked.
+    EpipolarProblem subset(const std::vector<bool>& marks) const;
+
     int size() const { return (int)first_.size(); }
     double mostScale() const { return mostScale_; }
     int sampleSize() const { return 5; }
-    int fewestSamples() const { return 100; }
     int parameters() const { return 5; }
 
     //! The poses that see the sample in front of both cameras.
     void propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const;
 
     //! Blind to points behind a camera, which have an epipolar line all the same.
-    double loss(const RelativePose& pose, double scale, double limit) const;
+    double loss(const RelativePose& pose, const Loss& by, double limit) const;
 
     //! Of a match behind a camera, as of a point at infinity, the nearest that may be.
     void squaredErrors(const RelativePose& pose, std::vector<double>& errors) const;
     //! How far a match is from where a point at infinity would be seen, pixels: as Sampson's error, a part of it in either image.
     double parallax(const RelativePose& pose, int i) const;
 
-    //! The same epipolar lines, and t the other way.
-    std::vector<RelativePose> alternatives(const RelativePose& pose) const { return {{pose.R, -pose.t}}; }
     //! What else the plane that most of the matches lie on may be seen from (Faugeras and Lustman 1988).
     std::vector<RelativePose> rivals(const RelativePose& pose, double scale) const;
     bool areApart(const RelativePose& pose, const RelativePose& other) const;
     void linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const;
     RelativePose moved(const RelativePose& pose, const Step& step) const { return iib::moved(pose, step); }
 
-    /** The part of the rows' sum of J J' / (1 + r^2 / scale^2) that noise of the points alone makes: of points without parallax all
-    that there is for the direction of t. Rather too much than too little of it.
+    /** The part of each row's J J' that noise of the points alone makes: of points without parallax all that there is for the direction of
+    t. Rather too much than too little of it.
     @param noise2 variance of a coordinate, pixels^2. */
-    Square<Step> noiseInDerivatives(
+    std::vector<Square<Step>> noiseInDerivatives(
             const RelativePose& pose, const std::vector<Row<Step>>& rows, double noise2) const;
 
 private:
