@@ -26,8 +26,6 @@ struct Found
         const Vec2d off(stepBetween(pose, truth).val + 3);
         return off.dot(covariance.get_minor<2, 2>(3, 3).inv() * off) < 5.99;
     }
-
-    double deviationOfDirection() const { return std::sqrt(covariance(3, 3) + covariance(4, 4)); }
 };
 
 RelativePose along(RNG& random, const Vec3d& t) { return {randomPose(random, .1).R, normalize(t)}; }
@@ -113,9 +111,9 @@ TEST(RelativePose, a_step_from_it_is_a_step_from_its_inverse)
     for (int k = 0; k < 5; k++)
     {
         Vec<double, 5> step;
-        step[k] = 1e-6;
+        step[k] = 1e-3;
         const Vec<double, 5> there = stepBetween(inverse(pose), inverse(moved(pose, step)));
-        EXPECT_LT(cv::norm(there - all * step), 1e-10) << k;
+        EXPECT_LT(cv::norm(there - all * step), 1e-5) << k;
     }
 }
 
@@ -132,24 +130,6 @@ TEST(RelativePose, small_parallax_among_wrong_matches_tells_how_far_off_it_is)
             inside += result.found && result.hasDirection(truth);
         }
         EXPECT_GE(inside, 43) << sign;
-    }
-}
-
-// One match next to the epipole takes nothing from what the others tell.
-TEST(RelativePose, of_a_camera_that_moved_forward_has_a_direction)
-{
-    RNG random(67);
-    for (int trial = 0; trial < 10; trial++)
-    {
-        const RelativePose truth = along(random, Vec3d(.05, .02, -1));
-        Views views(random, truth, 500, 0, .5);
-        const Vec3d epipole = CAMERA * truth.t;
-        const Vec3d before = CAMERA * (truth.R.t() * truth.t);
-        append(views, Point2d(before[0] / before[2] + .05, before[1] / before[2]),
-                Point2d(epipole[0] / epipole[2] + .05, epipole[1] / epipole[2]));
-        const Found result(views);
-        ASSERT_TRUE(result.found);
-        EXPECT_LT(result.deviationOfDirection(), 1.5 * CV_PI / 180);
     }
 }
 
