@@ -17,8 +17,9 @@ namespace {
 
 double square(double x) { return x * x; }
 
-const int CELLS = 32;      // of the diagonal of what the points span
-const double MODELS = 10;  // that a sample proposes, at most
+const int CELLS = 32;           // of the diagonal of what the points span
+const double CERTAINLY = 1e-3;  // chance
+const double MODELS = 10;       // that a sample proposes, at most
 
 //! The natural logarithm of n!, to ten digits (Abramowitz and Stegun, 6.1.40). C's lgamma writes its sign where all threads do.
 double logFactorial(int n)
@@ -33,6 +34,17 @@ double logFactorial(int n)
 double logBinomial(int n, int k)
 {
     return (logFactorial(n) - logFactorial(k) - logFactorial(n - k)) / std::log(10.);
+}
+
+//! The chance that k or more of n matches agree, each by a chance of its own.
+double chanceOfSoMany(int n, int k, double each)
+{
+    if (k <= 0 || each >= 1)
+        return 1;
+    double sum = 0;
+    for (int j = k; j <= n; j++)
+        sum += std::pow(10., logBinomial(n, j) + j * std::log10(each) + (n - j) * std::log10(1 - each));
+    return sum;
 }
 
 //! Matches of which some agree with a fundamental matrix or a homography, as errorsOfWrongMatches() has them.
@@ -232,15 +244,15 @@ bool Verdict::isOfOnePart(const Marks& agreeing, int sampleSize, double chance) 
                 }
             if (2 * most <= count)
                 continue;
-            Marks others(cells.size()), agree = others;
-            for (size_t i = 0; i < cells.size(); i++)
-            {
-                others[i] = !Rect(best, part).contains(Point(cells[i] % side, cells[i] / side));
-                agree[i] = others[i] && agreeing[i];
-            }
-            const auto beside = std::count(agree.begin(), agree.end(), true);
-            if ((beside <= sampleSize || 2 * beside < std::count(others.begin(), others.end(), true)) &&
-                    logFalseAlarms(others, agree, sampleSize, chance) > CERTAIN)
+            int others = 0, beside = 0;
+            for (int i : firsts_)
+                if (!Rect(best, part).contains(Point(cells[i] % side, cells[i] / side)))
+                {
+                    others++;
+                    beside += agreeing[i];
+                }
+            // Some of the others the pose was fitted to.
+            if (2 * beside < others && chanceOfSoMany(others, beside - sampleSize, chance) > CERTAINLY)
                 return true;
         }
     return false;
