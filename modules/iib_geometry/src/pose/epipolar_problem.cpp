@@ -334,26 +334,23 @@ void EpipolarProblem::linearize(const RelativePose& pose, double limit, std::vec
     }
 }
 
-std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
+Square<EpipolarProblem::Step> EpipolarProblem::noiseInDerivatives(
         const RelativePose& pose, const std::vector<Row<Step>>& rows, double noise2) const
 {
     const double little = .01;  // pixels, for differences
-    const double each =
-            noise2 / square(little) * (1 + 2 * std::sqrt(2. / std::max<double>((double)rows.size(), 1)));
     const Linear linear(pose);
-    std::vector<Square<Step>> all;
+    Square<Step> sum = Square<Step>::zeros();
     for (const Row<Step>& r : rows)
-    {
-        all.push_back(Square<Step>::zeros());
         for (int coordinate = 0; coordinate < 4; coordinate++)
         {
             Point2d first = first_[r.match], second = second_[r.match];
             double* const moved[] = {&second.x, &second.y, &first.x, &first.y};
             *moved[coordinate] += little * pixels_[coordinate];
-            addProduct(Step(row(linear, first, second).J - r.J), each, all.back());
+            const Step change = row(linear, first, second).J - r.J;
+            addProduct(change, noise2 / square(little), sum);
         }
-    }
-    return all;
+    mirror(sum);
+    return sum * (1 + 2 * std::sqrt(2. / std::max<double>((double)rows.size(), 1)));
 }
 
 }  // namespace cv::iib

@@ -45,10 +45,10 @@ public:
     void linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const;
     RelativePose moved(const RelativePose& pose, const Step& step) const { return iib::moved(pose, step); }
 
-    /** The part of each row's J J' that noise of the points alone makes: of points without parallax all that there is for the direction of
-    t. Rather too much than too little of it.
+    /** The part of the rows' sum of J J' / (1 + r^2 / scale^2) that noise of the points alone makes: of points without parallax all
+    that there is for the direction of t. Rather too much than too little of it.
     @param noise2 variance of a coordinate, pixels^2. */
-    std::vector<Square<Step>> noiseInDerivatives(
+    Square<Step> noiseInDerivatives(
             const RelativePose& pose, const std::vector<Row<Step>>& rows, double noise2) const;
 
 private:

@@ -30,9 +30,9 @@ public:
     Matx33d moved(const Matx33d& transform, const Step& step) const;
 
     //! Next to none.
-    std::vector<Square<Step>> noiseInDerivatives(const Matx33d&, const std::vector<Row<Step>>&, double) const
+    Square<Step> noiseInDerivatives(const Matx33d&, const std::vector<Row<Step>>&, double) const
     {
-        return {};
+        return Square<Step>::zeros();
     }
 
     //! The same transform between pixels, and that of a model between pixels.

@@ -83,8 +83,6 @@ Square<typename Problem::Step> covarianceOf(
 {
     typedef typename Problem::Step Step;
     const double leastBend = .2;  // the noise is far over the scale
-    const double most =
-            25;  // of what a row tells: by so much the noise in it may be more, as next to an epipole
     std::vector<Row<Step>> rows;
     const double perScale2 = 1 / square(fit.scale);
     problem.linearize(fit.model, FARTHEST * square(fit.scale), rows);
@@ -113,16 +111,11 @@ Square<typename Problem::Step> covarianceOf(
     };
     std::vector<Part> all(PARTS_ACROSS * PARTS_DOWN);
     Square<Step> hessian = Square<Step>::zeros(), ofGradient = hessian;  // its covariance
-    const std::vector<Square<Step>> noises = problem.noiseInDerivatives(fit.model, rows, noise2);
-    for (size_t i = 0; i < rows.size(); i++)
+    for (const Row<Step>& row : rows)
     {
-        const Row<Step>& row = rows[i];
         Part& part = all[parts[row.match]];
         const double weight = 1 / (1 + row.r2 * perScale2);
         addProduct(row.J, bend * weight, part.hessian);
-        if (!noises.empty())
-            part.hessian -=
-                    noises[i] * (bend * std::min(1., most * row.J.dot(row.J) / (trace(noises[i]) + 1e-300)));
         addProduct(row.J, noise2 * square(meanSlope), ofGradient);
         part.gradient += weight * row.r * row.J;
         part.along += weight * row.J;
@@ -134,6 +127,7 @@ Square<typename Problem::Step> covarianceOf(
         addProduct(part.along, SHARED * noise2, ofGradient);
     }
     mirror(ofGradient);
+    hessian -= problem.noiseInDerivatives(fit.model, rows, noise2) * bend;
     const double least = noise2 / square(largest);
     Square<Step> unknown;
     const Square<Step> inverse = inverseWithFloor(hessian, least, &unknown);
