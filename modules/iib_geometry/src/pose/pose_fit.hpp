@@ -7,6 +7,7 @@
 namespace cv::iib {
 
 const double REFINED = .25;  // least scale by which matches count as agreeing, pixels
+const int FEW = 30;          // matches: all of them count
 
 //! A pose that matches agree with.
 struct PoseFit : Fit<EpipolarProblem>

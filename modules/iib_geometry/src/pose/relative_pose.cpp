@@ -11,7 +11,6 @@ namespace {
 
 const double LEAST_SCALE = .1, MOST_SCALE = 1000;    // pixels
 const double RANK = 1e-13;                           // of covariances in double precision
-const int FEW = 30;                                  // matches that agree: all of them count
 const double ONE_ROTATION = .05, ONE_DIRECTION = 1;  // radians: two poses less apart are one, not exact
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
@@ -162,7 +161,10 @@ bool tellsDirection(const EpipolarProblem& problem, const PoseFit& fit, const Ve
         chances += std::asin(limit / parallax) * 2 / CV_PI;
         count++;
     }
-    return verdict.logFalseAlarms(seen, agree, matchesOfDirection, chances / std::max(count, 1.)) <
+    const double chance = chances / std::max(count, 1.),
+                 others = verdict.places(seen) - verdict.places(agree);
+    // Here the chance is so large that it counts that the others do not agree.
+    return verdict.logFalseAlarms(seen, agree, matchesOfDirection, chance) + others * std::log10(1 - chance) <
            Verdict::CERTAIN;
 }
 
