@@ -176,6 +176,19 @@ PoseFit fitPose(const EpipolarProblem& problem, const Verdict& verdict, double s
             isWide = false;
         }
     }
+    const auto agreeing = [](const PoseFit& fit) {
+        const Verdict::Marks near = within(fit.limit, fit.squared);
+        return std::count(near.begin(), near.end(), true);
+    };
+    if (scale == 0 && problem.size() < FEW)
+    {
+        // A pose may be fitted to some of few matches so well that the others seem wrong.
+        const PoseFit narrow = best;
+        best = PoseFit();
+        tryBy(WIDER * REFINED, FEW_TRIALS);
+        if (best.logFalseAlarms > Verdict::CERTAIN || agreeing(best) < agreeing(narrow))
+            best = narrow;
+    }
     best.samples = samples;
     if (best.squared.empty())
         return best;
