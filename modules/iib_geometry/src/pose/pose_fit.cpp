@@ -82,7 +82,7 @@ PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double sca
                 [&](size_t i) { candidates[count + i] = candidateOf(problem, poses[i], scale, weights); });
         std::stable_sort(candidates.begin(), candidates.end());
     };
-    const Search<EpipolarProblem> found = search(problem, wide, wide, FEWEST, trials);
+    const Search<EpipolarProblem> found = search(problem, Loss{scale}, Loss{2 * scale}, FEWEST, trials);
     fit.samples = found.samples;
     fit.wantsMore = found.wantsMore;
     add(found.models);
