@@ -25,7 +25,7 @@ CHOSEN_ON = {'walk_facade', 'strecha relit'}
 CHOSEN_SEEDS = {'1', '21', '22', '23', '31', '32'}
 REFERENCE = 'Hessian', 'IIB UNIVERSAL', 'propagated', 'findRelativePose'  # what other ways to a pose are compared with
 # Scenes that the constants of matchViews were chosen on, and one of the same place.
-CHOSEN_VIEWS = {'Herz-Jesus-P8', 'chamonix', 'courbevoie', 'boat', 'bikes', 'cam01', 'cam04', 'scene'}
+CHOSEN_VIEWS = {'Herz-Jesus-P8', 'entry-P10', 'chamonix', 'courbevoie', 'boat', 'bikes', 'cam01', 'cam04', 'scene'}
 SAME_PLACE = {'iib_demo/scene', 'tilde_webcam/courbevoie'}
 VISITS = {'dusk', 'fog', 'morning', 'night', 'overcast', 'snow', 'wet', 'winter'}  # sequences of one place in other lights
 MODELS = ('TRANSLATION', 'SIMILARITY', 'AFFINE', 'HOMOGRAPHY')
