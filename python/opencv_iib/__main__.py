@@ -84,7 +84,7 @@ def _seen(parser: argparse.ArgumentParser) -> None:
     """What of images is described, and how large."""
     parser.add_argument('--max-size', type=int, default=0, metavar='PIXELS',
                         help='reduce larger images to it; points stay in own pixels')
-    parser.add_argument('--mask', metavar='PATH', help='describe nothing where it is 0; in a folder, NAME.jpg.png is the mask of NAME.jpg')
+    parser.add_argument('--mask', metavar='PATH', help='describe nothing where it is 0; folder: NAME.jpg.png')
     parser.add_argument('--no-exif', dest='exif', action='store_false', help='for files whose EXIF data tell a wrong orientation')
 
 
@@ -160,7 +160,7 @@ def _parser() -> _Parser:
     command.add_argument('--neighbours', type=int, default=20, metavar='N', help='of sequential, retrieval and gps (%(default)s)')
     command.add_argument('--ratio', type=float, default=.9, help='ratio test beside the cross-check (%(default)s; 1: none)')
     command.add_argument('--no-search', action='store_false', dest='search',
-                         help='do not look for other zooms, rotations and tilts where images match none as they are')
+                         help='match images as they are only')
     _choice(command, '--verify', VERIFIERS, str.lower, default='auto', help='two-view geometry (%(default)s)')
     command.add_argument('--workers', type=int, metavar='N', help='threads (one a core)')
     command.add_argument('--scheduler', metavar='ADDRESS', help="have the workers of Dask's scheduler there do it")

@@ -124,7 +124,7 @@ class Commands(Collection):
             right, wrong = (run_command(*arguments, *more)[1] for more in ((), ('--no-exif',)))
             self.assertNotIn('turned', right)
             if orientation in _upright.ROTATIONS:  # which the images themselves tell
-                self.assertRegex(wrong, rf'the second image is turned by {dict(zip(_upright.ROTATIONS, (180, 270, 90)))[orientation]} degrees')
+                self.assertRegex(wrong, rf'is rotated by {dict(zip(_upright.ROTATIONS, (180, 270, 90)))[orientation]} degrees')
                 self.assertGreater(int(wrong.split()[1]), .7 * int(right.split()[1]))
             else:
                 self.assertRegex(wrong, 'may not show the same')
@@ -185,7 +185,7 @@ class Commands(Collection):
         images = [self.write(picture[20:320, 30:430], orientation) for orientation in _upright.ROTATIONS]
         for _ in range(2):  # also of those that an earlier call has aligned
             done = align(first, images, self.folder / 'turned', exif=False)
-            self.assertEqual([str(each).split(', ')[-1] for each in done], [f'turned by {angle} degrees clockwise' for angle in (180, 270, 90)])
+            self.assertEqual([str(each).split(', ')[-1] for each in done], [f'rotated by {angle} degrees' for angle in (180, 270, 90)])
         self.assertNotIn('turned', ''.join(map(str, align(first, images, self.folder / 'turned'))))
 
     def test_colmap(self):
