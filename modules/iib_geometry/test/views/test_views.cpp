@@ -161,7 +161,8 @@ TEST(Views, refuses_images_of_other_scenes)
     EXPECT_FALSE(matchViews(picture(1), Mat(300, 400, CV_8U, Scalar(9)), points1, points2));
     EXPECT_TRUE(points1.empty() && points2.empty());
     const Mat tiny(9, 7, CV_8U, Scalar(9)), mask(9, 7, CV_8U, Scalar(1));
-    EXPECT_FALSE(matchViews(tiny, tiny, points1, points2, noArray(), noArray(), noArray(), 100, 4, mask, mask));
+    EXPECT_FALSE(
+            matchViews(tiny, tiny, points1, points2, noArray(), noArray(), noArray(), 100, 4, mask, mask));
 }
 
 TEST(Views, one_matcher_serves_many_images_as_each_alone)
