@@ -71,7 +71,7 @@ class Aligned(NamedTuple):
     def __str__(self) -> str:
         if not self.file:
             return self.verdict
-        seen = f', scale {self.scale:.2f}, rotated by {self.rotation:.0f} degrees' if (self.rotation, self.scale) != (0, 1) else ''
+        seen = f', scale {self.scale:.2f}, rotated by {round(self.rotation) % 360} degrees' if (self.rotation, self.scale) != (0, 1) else ''
         return f'{self.matches} matches agree, its corners are known to {max(self.errors):.2f} pixels{seen}'
 
 

@@ -36,7 +36,7 @@ class Result(NamedTuple):
 
     def __str__(self) -> str:
         if self.good.any():
-            seen = ', scale {1:.2f}, rotated by {0:.0f} degrees'.format(*self.view) if self.name == 'IIB' and self.view != (0, 1) else ''
+            seen = f', scale {self.view[1]:.2f}, rotated by {round(self.view[0]) % 360} degrees' if self.name == 'IIB' and self.view != (0, 1) else ''
             return f'{self.name} {self.good.sum()} of {len(self.good)} consistent{seen}'
         return f'{self.name}: no homography found in {len(self.good)} matches'
 

@@ -45,6 +45,11 @@ class FeatureOptions:
             object.__setattr__(self, field, getattr(name, 'name', str(name)).upper())
         object.__setattr__(self, 'mask', None if self.mask is None else os.fspath(self.mask))
 
+    @property
+    def are_recommended(self) -> bool:
+        """Whether these are the recommended chain's, of which matchViews makes views."""
+        return (self.detector, self.preset, self.orientation, self.max_size) == ('HESSIAN', 'UNIVERSAL', False, 0)
+
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
         if self.detector not in DETECTORS:

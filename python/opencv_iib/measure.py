@@ -1,6 +1,7 @@
 """Matches of two images to a fraction of a pixel, and the pose between their cameras."""
 from __future__ import annotations
 
+import copy
 import io
 import json
 import os
@@ -17,10 +18,13 @@ from opencv_iib._streams import is_open_file
 from opencv_iib._two_views import show_the_same
 from opencv_iib._upright import Turn, upright
 from opencv_iib.demo import GOOD, INK, OTHER, draw
+from opencv_iib.enums import Orientation
 from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.functions import match
 from opencv_iib.geometry import FoundPose, NoPose, findRelativePose
+from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.refinement import PropagatedMatches, RefinedMatches, prepared, propagateMatches
+from opencv_iib.rotation import matchRotated
 from opencv_iib.views import match_stored, rotation_and_scale, similarity
 
 COMPARED = .25  # pixels: one scale of poses whose matches are counted, since under scales of their own the looser one has more
@@ -32,7 +36,7 @@ class Measured(NamedTuple):
     """What :func:`match_images` finds."""
 
     matches: RefinedMatches
-    bits: NDArray[np.int32]  #: of each match, that differ
+    bits: NDArray[np.int32]  #: of each match, that differ; -1 where the images were matched in views of them
     pose: Union[FoundPose, NoPose, None]  #: None without cameras
     found: bool  #: there is a pose, or without cameras more matches than chance may give agree with one epipolar geometry or homography
     view: NDArray[np.float64]  #: 3 x 3: approximate affine map from pixels of the first image to pixels of the second
@@ -78,7 +82,7 @@ class Measured(NamedTuple):
         if suffix == '.npz':
             arrays = io.BytesIO()
             known = {name: value for name, value in {'found': self.found, **(pose or {})}.items() if value is not None}
-            np.savez_compressed(arrays, **self.matches._asdict(), bits=self.bits, view=self.view, rotation=self.rotation, scale=self.scale, **known)
+            np.savez_compressed(arrays, **self.matches._asdict(), bits=self.bits, **({'view': self.view} if self.found else {}), rotation=self.rotation, scale=self.scale, **known)
             return arrays.getvalue()
         if suffix == '.json':
             matches = [dict(zip(COLUMNS, (json.loads(text) if np.isfinite(float(text)) else None for text in row))) for row in rows]
@@ -94,7 +98,7 @@ class Measured(NamedTuple):
         if count:
             text += f' to {np.median(self.deviations[self.refined]):.2f} pixels (median standard deviation)'
         if self.found and (self.rotation, self.scale) != (0, 1):
-            text += f', the second image has scale {self.scale:.2f} and is rotated by {self.rotation:.0f} degrees'
+            text += f', the second image has scale {self.scale:.2f} and is rotated by {round(self.rotation) % 360} degrees'
         if self.pose is None:
             return text + '\nthese may not show the same: no more matches agree with one geometry than chance may give' * (not self.found)
         if not self.pose.found:
@@ -202,6 +206,8 @@ def measure(first: View, second: View, features: Features) -> Measured:
     measured = pair.measured((first.rows, second.rows), (first.codes, second.codes), match(first.codes, second.codes).pairs)
     if features.options.orientation or measured.found and (measured.rotation, measured.scale) == (0, 1):
         return measured
+    if not features.options.are_recommended:
+        return measured if measured.found else pair.rotated(features, measured)
     seen = pair.seen(features.options.points)
     return seen if seen.found and (not measured.found or seen.agree.sum() > measured.agree.sum()) else measured
 
@@ -211,6 +217,7 @@ class _Pair:
 
     def __init__(self, *views: View) -> None:
         self.images, self._masks, self._turns = zip(*((view.image, view.mask, view.turn) for view in views))
+        self._rows = [view.rows for view in views]
         self._prepared = [prepared(image) for image in self.images]
         self.lenses = [view.lens for view in views if view.lens is not None]
 
@@ -247,6 +254,16 @@ class _Pair:
     def _upright(self, view: np.ndarray) -> np.ndarray:
         """Of a map between the files' pixels."""
         return np.linalg.inv(self._turns[1].matrix) @ view @ self._turns[0].matrix
+
+    def rotated(self, features: Features, otherwise: Measured) -> Measured:
+        """With features of any detector, by one angle for all."""
+        if not len(self._rows[0]) or not len(self._rows[1]):
+            return otherwise
+        extractor = copy.copy(features.extractor)
+        extractor.setOrientation(Orientation.KEYPOINT)
+        _, *rows, matches = matchRotated(*self.images, extractor, HierarchicalMatcher.createRecommended(), -1, *self._rows)
+        found = self.measured(rows, [extractor.compute(image, some)[1] for image, some in zip(self.images, rows)], matches[:, :2])
+        return found if found.found else otherwise
 
     def _visible(self, *points: np.ndarray) -> np.ndarray:
         """Which matches the cameras can see: a lens shows nothing beyond its range."""

@@ -412,7 +412,7 @@ def views_guide():
             '(the upright chain %s, SIFT %s), and %s at a tilt of 4 (%s and %s). It takes %.0f ms of one thread for an ordinary pair, images to matches, where the\n'
             'chain takes %.0f; a search takes %s ms (SIFT %s; `cv::AffineFeature` with SIFT, which finds more matches of many more points,\n'
             '%s), and %.0f ms where the images have nothing in common (SIFT %.0f). All rotations are searched, relative sizes from a quarter to four\n'
-            'times, and tilts up to 4 (`maxTilt`); the second image at twice the size leaves %s matches. Mirrored images are not found, and of a scene with strong\n'
+            'times, and tilts up to 4 (`maxTilt`); the second image at twice the size leaves %s matches. Mirrored images are not searched for, and of a scene with strong\n'
             'perspective perhaps one part alone\n'
             '([all figures and conditions](results/README.md#other-zoom-rotation-and-tilt)).' % (
                 found['zoom', '1', 'SIFT']['pairs'], *(right('zoom', '0.25', method) for method in ('matchViews', 'upright chain', 'SIFT')),

@@ -7,7 +7,6 @@
 #include "spread.hpp"
 #include "../pose/uncertainty.hpp"
 #include "../pose/verdict.hpp"
-#include "../common/points.hpp"
 #include "../views/support.hpp"
 #include "../views/view_search.hpp"
 #include "working_pair.hpp"

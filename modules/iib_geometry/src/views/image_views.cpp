@@ -7,7 +7,7 @@
 namespace cv::iib {
 namespace {
 
-const int FEW = 240;       // points of a view by which it is judged
+const int FEW = 270;       // points of a view by which it is judged
 const double MARGIN = .1;  // of an image's size, around the part that the other one shows
 const int SEARCHED = 640;  // pixels of the longer side of an image that is searched
 

@@ -55,6 +55,10 @@ Ptr<ViewMatcher> ViewMatcher::create(InputArray image, int maxFeatures, double m
     if (!(maxTilt >= 1 && maxTilt <= mostTilt))
         CV_Error(Error::StsOutOfRange,
                 format("matchViews: maxTilt is %g; it is 1 (no tilted views) to %g", maxTilt, mostTilt));
+    if (maxFeatures < 0)
+        CV_Error(Error::StsOutOfRange,
+                format("matchViews: maxFeatures is %d; it is a number of keypoints, or 0 for all",
+                        maxFeatures));
     return makePtr<ViewMatcherImpl>(image.getMat(), mask.getMat(), maxFeatures, maxTilt);
 }
 

@@ -120,7 +120,7 @@ ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdin
     const std::vector<Point2d> places1 = placesOf(found.points1, geometry.inliers),
                                places2 = placesOf(found.points2, geometry.inliers);
     const Matx33d map = Support::of(places1, places2).map;
-    if (!agreeFarApart(places1, places2, map))
+    if (determinant(map) <= 0 || !agreeFarApart(places1, places2, map))
         return found;
     found.map = map;
     found.logFalseAlarms = geometry.logFalseAlarms;
@@ -163,9 +163,7 @@ ViewMatches matchAsTheyAre(const ImageViews& first, const ImageViews& second)
 
 void searchMatches(const ImageViews& first, const ImageViews& second, double maxTilt, ViewMatches& best)
 {
-    int tried = 1;
-    searchViews(first, second, maxTilt, [&](const ViewCandidate& candidate, int pairs) {
-        tried = pairs;
+    const int tried = searchViews(first, second, maxTilt, [&](const ViewCandidate& candidate, int) {
         if (areAlike(candidate.map, Matx33d::eye()))  // which was tried
             return false;
         ViewMatches found = seenAs(first, second, candidate.map);
@@ -175,7 +173,7 @@ void searchMatches(const ImageViews& first, const ImageViews& second, double max
             std::swap(found, best);
         return best.isDecisive();
     });
-    best.logFalseAlarms += std::log10((double)tried);
+    best.logFalseAlarms += std::log10((double)std::max(tried, 1));
 }
 
 }  // namespace cv::iib

@@ -89,11 +89,11 @@ ViewCandidate compare(const ImageViews& first, const View& view1, const ImageVie
 
 }  // namespace
 
-void searchViews(const ImageViews& first, const ImageViews& second, double maxTilt,
+int searchViews(const ImageViews& first, const ImageViews& second, double maxTilt,
         const std::function<bool(const ViewCandidate&, int)>& isAnswer)
 {
     if (first.size().empty() || second.size().empty())
-        return;
+        return 0;
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
     matcher->setCrossCheck(true);
     std::vector<std::pair<View, View>> views = scaledViews();
@@ -107,7 +107,7 @@ void searchViews(const ImageViews& first, const ImageViews& second, double maxTi
         const ViewCandidate candidate = compare(first, pair.first, second, pair.second, *matcher);
         tried += int(FIRST_ANGLES.size() * SECOND_ANGLES.size());
         if (candidate.support >= MUCH && isAnswer(candidate, tried))
-            return;
+            return tried;
         if (candidate.support >= LEAST && candidate.support < MUCH)
             others.push_back(candidate);
     }
@@ -115,6 +115,7 @@ void searchViews(const ImageViews& first, const ImageViews& second, double maxTi
     for (int k = 0; k < std::min((int)others.size(), MOST_TRIED); k++)
         if (isAnswer(others[k], tried))
             break;
+    return tried;
 }
 
 }  // namespace cv::iib

@@ -19,8 +19,9 @@ struct ViewCandidate
 /** Looks for the views of two images in which they match: relative scales from 1/4 to 4 with any rotation, then tilts.
 @param maxTilt largest tilt between the images; up to 2 no view is tilted.
 @param isAnswer called with candidates of much support as soon as they are found, and with the best others at the end; true ends the search. The second
-    argument is the number of pairs of views, upright and turned, that were compared so far. */
-void searchViews(const ImageViews& first, const ImageViews& second, double maxTilt,
+    argument is the number of pairs of views, upright and turned, that were compared so far.
+@return the number of those that were compared in all. */
+int searchViews(const ImageViews& first, const ImageViews& second, double maxTilt,
         const std::function<bool(const ViewCandidate&, int)>& isAnswer);
 
 }  // namespace cv::iib

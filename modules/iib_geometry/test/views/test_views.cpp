@@ -106,6 +106,26 @@ TEST(Views, match_at_any_zoom_rotation_and_tilt)
     }
 }
 
+TEST(Views, align_reduced_and_tilted_images)
+{
+    const Mat image = largePicture(6);
+    for (const Change& change : {Change{"reduced", .25, 0, 1, 0}, Change{"tilted and rotated", 1, 60, 2, 0}})
+    {
+        Matx33d truth;
+        const Mat other = change.of(image, truth);
+        Mat transform;
+        String reason;
+        ASSERT_TRUE(alignImages(image, other, transform, ALIGN_HOMOGRAPHY, noArray(), noArray(), &reason))
+                << reason;
+        for (const Vec3d& corner : {Vec3d(0, 0, 1), Vec3d(639, 0, 1), Vec3d(639, 479, 1), Vec3d(0, 479, 1)})
+        {
+            const Vec3d back = Matx33d(transform) * truth * corner;
+            EXPECT_LT(std::hypot(back[0] / back[2] - corner[0], back[1] / back[2] - corner[1]), 1.5)
+                    << change.name;
+        }
+    }
+}
+
 //! Squared errors over variances are about one along each axis, whatever the view did to the pixels.
 TEST(Views, covariances_are_of_pixels_of_the_image)
 {
@@ -198,6 +218,7 @@ TEST(Views, masks_hold_in_all_views)
     EXPECT_THROW(matchViews(image, other, points1, points2, noArray(), noArray(), noArray(), 1000, 4,
                          noArray(), mask),
             cv::Exception);
+    EXPECT_THROW(ViewMatcher::create(image, -1), cv::Exception);
     for (double tilt : {.5, 9., std::numeric_limits<double>::quiet_NaN()})
         EXPECT_THROW(matchViews(image, other, points1, points2, noArray(), noArray(), noArray(), 1000, tilt),
                 cv::Exception);

@@ -13,7 +13,7 @@ namespace iib {
 /** @brief Matches two images under changed illumination at any zoom, rotation and tilt.
 
 The images are matched as they are first: the recommended chain, then propagateMatches. If these matches are decisive, they are the
-answer. Else views of both images are simulated (@cite MorelYu2009) and compared by 300 points each:
+answer. Else views of both images are simulated (@cite MorelYu2009) and compared by a few hundred points each:
 - either image reduced by up to 4, at rotations 30 degrees apart;
 - either image tilted by 2 (with maxTilt above 4 also by 4), upright, reduced and rotated.
 
@@ -24,14 +24,14 @@ matrix or a homography). Matches that agree with this geometry are propagated a 
 The result is significant if fewer than one in a thousand such results is expected among random matches, over all pairs of views that were
 compared. It is the same for every number of threads.
 
-Cost: a pair that matches as it is takes the time of detection, description, matching and propagation. A search takes three to eight times
+Cost: a pair that matches as it is takes the time of detection, description, matching and propagation. A search takes three to fourteen times
 as long with 1000 points, and 30 times as long if it finds nothing.
 
 Limits:
 - Images of more than 640 pixels are reduced to 640 for the search, and to 1024 for the matches that a search leads to. The covariances are
   those of the reduced images, in pixels of the originals.
 - Views are affine: one part of a scene with strong perspective may match alone.
-- Mirrored images are not found.
+- Mirrored images are not searched for. A symmetric picture and its mirror image may match all the same.
 
 @param image1, image2 as in IIBDescriptorExtractor::compute
 @param points1, points2 N x 2, CV_32F, pixels: matched points of both images. If the result is false, the best matches there are
