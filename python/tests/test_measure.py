@@ -266,7 +266,7 @@ class Align(Commands):
         rows = sorted(self.rows('out/transforms.csv'), key=lambda row: images.index(Path(row['image'])))
         self.assertEqual([Path(row['image']) for row in rows], images)
         self.assertEqual([row['verdict'] for row in rows][:2], ['aligned', 'aligned'])
-        self.assertRegex(rows[2]['verdict'], '^the images ')
+        self.assertRegex(rows[2]['verdict'], 'the images (may not show the same|have too few matches)')
         status, out, _ = run_command('align', SCENES / 'view_noon.jpg', images[0], '--out', self.folder / 'wrong', '--model', 'translation')
         self.assertEqual((status, 'differ by more than a translation' in out), (3, True))
         true = np.linalg.inv(np.loadtxt(SCENES / 'H_view_panned'))
