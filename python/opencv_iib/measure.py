@@ -81,8 +81,8 @@ class Measured(NamedTuple):
             pose.update(found=self.pose.found, reason=self.pose.reason, inliers=self.agree)
         if suffix == '.npz':
             arrays = io.BytesIO()
-            known = {name: value for name, value in {'found': self.found, **(pose or {})}.items() if value is not None}
-            np.savez_compressed(arrays, **self.matches._asdict(), bits=self.bits, **({'view': self.view} if self.found else {}), rotation=self.rotation, scale=self.scale, **known)
+            known = {name: value for name, value in {'found': self.found, 'view': self.view if self.found else None, **(pose or {})}.items() if value is not None}
+            np.savez_compressed(arrays, **self.matches._asdict(), bits=self.bits, rotation=self.rotation, scale=self.scale, **known)
             return arrays.getvalue()
         if suffix == '.json':
             matches = [dict(zip(COLUMNS, (json.loads(text) if np.isfinite(float(text)) else None for text in row))) for row in rows]
@@ -261,7 +261,8 @@ class _Pair:
             return otherwise
         extractor = copy.copy(features.extractor)
         extractor.setOrientation(Orientation.KEYPOINT)
-        _, *rows, matches = matchRotated(*self.images, extractor, HierarchicalMatcher.createRecommended(), -1, *self._rows)
+        _, *rows, matches = matchRotated(self.images[0], self.images[1], extractor, HierarchicalMatcher.createRecommended(), -1,
+                                                self._rows[0], self._rows[1])
         found = self.measured(rows, [extractor.compute(image, some)[1] for image, some in zip(self.images, rows)], matches[:, :2])
         return found if found.found else otherwise
 
