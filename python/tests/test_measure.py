@@ -153,6 +153,11 @@ class Match(Commands):
         self.assertEqual({match['bits'] for match in found['matches']}, {-1})
         status, out, _ = run_command('demo', a, b, '--out', self.folder / 'd.png')
         self.assertRegex(out, r'^IIB \d+ of \d+ consistent, scale 0.40, rotated by 90 degrees, SIFT')
+        turned = self.write('c.png', cv2.rotate(picture, cv2.ROTATE_90_CLOCKWISE))
+        of_orb = match_images(a, turned, options=FeatureOptions(points=1000, detector='ORB'))  # which views are not made of
+        self.assertTrue(of_orb.found)
+        self.assertGreaterEqual(of_orb.bits.min(), 0)
+        self.assertAlmostEqual(of_orb.rotation, 90, delta=1)
 
     def test_nothing_found_and_mistakes(self):
         a, flat = self.write('a.png', self.world((4, 4))), self.write('flat.png', np.zeros((360, 480), np.uint8))
