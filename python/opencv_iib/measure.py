@@ -28,6 +28,7 @@ from opencv_iib.rotation import matchRotated
 from opencv_iib.views import match_stored, rotation_and_scale, similarity
 
 COMPARED = .25  # pixels: one scale of poses whose matches are counted, since under scales of their own the looser one has more
+CERTAIN = 200  # matches that agree without a pose: fewer may be wrong together
 SUFFIXES = '.csv', '.json', '.npz'
 COLUMNS = ('x1', 'y1', 'x2', 'y2', 'xx', 'xy', 'yy', 'similarity', 'bits')
 
@@ -204,7 +205,8 @@ def measure(first: View, second: View, features: Features) -> Measured:
     """What match_images does, of images that were described by these features."""
     pair = _Pair(first, second)
     measured = pair.measured((first.rows, second.rows), (first.codes, second.codes), match(first.codes, second.codes).pairs)
-    if features.options.orientation or measured.found and (measured.rotation, measured.scale) == (0, 1):
+    certain = measured.found and (measured.pose is not None or measured.agree.sum() >= CERTAIN) and (measured.rotation, measured.scale) == (0, 1)
+    if features.options.orientation or certain:
         return measured
     if not features.options.are_recommended:
         return measured if measured.found else pair.rotated(features, measured)

@@ -10,9 +10,10 @@
 namespace cv::iib {
 namespace {
 
-const double DECISIVE = -25;    // logarithm of the number of false alarms below which nothing else is tried
-const int LEAST_CLEAR = 40;     // matches that are compared, and
-const double SHARE_CLEAR = .6;  // of them that are supported: these are decisive without a geometry
+const double DECISIVE = -25;  // logarithm of the number of false alarms below which nothing else is tried
+const int LEAST_CLEAR = 100;  // matches: one wrong match may lead to fewer
+const double SHARE_CLEAR =
+        .6;  // of those that are compared, which neighbours support: decisive without a geometry
 const double SHARE_RIGHT = .8;  // of the matches that agree with a geometry, if few lead to wrong ones
 const int MOST_IMPROVED = 2;    // times
 const int SMALL = 480, WORKING = 1024;  // pixels of the longest side of a view
@@ -86,7 +87,7 @@ ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdin
         const std::vector<Point2d> places1 = placesOf(found.points1, {}),
                                    places2 = placesOf(found.points2, {});
         const Support support = Support::of(places1, places2);
-        if (support.compared >= LEAST_CLEAR && support.share() > SHARE_CLEAR &&
+        if (found.points1.rows >= LEAST_CLEAR && support.share() > SHARE_CLEAR &&
                 agreeFarApart(places1, places2, support.map))
         {
             found.map = support.map;
