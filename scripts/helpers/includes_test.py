@@ -11,7 +11,8 @@ import sys
 
 # What a folder below src may include, besides precomp.hpp; the rest of the module includes what it likes.
 ALLOWED = {'': {''}, 'common': {'common'}, 'rotation': {'rotation', 'common'}}
-ALLOWED['pose'] = {'pose', 'common'}  # of iib_geometry
+ALLOWED['verdict'] = {'verdict', 'common'}  # of iib_geometry
+ALLOWED['pose'] = {'pose', *ALLOWED['verdict']}
 ALLOWED['views'] = {'views', *ALLOWED['pose']}
 ALLOWED['alignment'] = {'alignment', *ALLOWED['views']}
 ALLOWED['map'] = {'map', *ALLOWED['pose']}

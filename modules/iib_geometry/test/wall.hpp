@@ -4,13 +4,13 @@
 #include <map>
 
 #include "test_folder.hpp"
-#include "map/lens.hpp"
+#include "pose/lens.hpp"
 #include "map/map_folder.hpp"
 #include "opencv2/core/quaternion.hpp"
 #include "opencv2/iib.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
-#include "map/camera_pose.hpp"
+#include "pose/camera_pose.hpp"
 
 namespace opencv_test {
 using namespace cv::iib;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opencv2/iib/alignment.hpp"
 
-#include "parallax.hpp"
+#include "../verdict/parallax.hpp"
 #include "../pose/planar_problem.hpp"
 #include "../common/points.hpp"
 #include "spread.hpp"
 #include "../pose/uncertainty.hpp"
-#include "../pose/verdict.hpp"
-#include "../views/support.hpp"
+#include "../verdict/verdict.hpp"
+#include "../verdict/support.hpp"
 #include "../views/view_search.hpp"
 #include "working_pair.hpp"
 

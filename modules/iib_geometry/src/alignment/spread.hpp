@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "../pose/verdict.hpp"
+#include "../verdict/verdict.hpp"
 #include "working_pair.hpp"
 
 namespace cv::iib {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../map/map.hpp"
-#include "../map/camera_pose.hpp"
+#include "../pose/camera_pose.hpp"
 
 namespace cv::iib {
 

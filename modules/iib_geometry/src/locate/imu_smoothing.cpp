@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "../map/camera_pose.hpp"
+#include "../pose/camera_pose.hpp"
 #include "../pose/two_views.hpp"
 #include "imu_motion.hpp"
 

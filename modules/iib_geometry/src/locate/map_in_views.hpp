@@ -2,7 +2,7 @@
 #pragma once
 
 #include "../map/features.hpp"
-#include "../map/camera_pose.hpp"
+#include "../pose/camera_pose.hpp"
 #include "../views/image_views.hpp"
 
 namespace cv::iib {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "guided_matches.hpp"
-#include "../pose/verdict.hpp"
+#include "../verdict/verdict.hpp"
 
 namespace cv::iib {
 namespace {

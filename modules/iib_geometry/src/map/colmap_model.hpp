@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "lens.hpp"
+#include "../pose/lens.hpp"
 
 namespace cv::iib {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "camera_pose.hpp"
+#include "../pose/camera_pose.hpp"
 #include "map.hpp"
 #include "segments.hpp"
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "../common/parallel.hpp"
-#include "camera_pose.hpp"
+#include "../pose/camera_pose.hpp"
 #include "triangulation.hpp"
 
 namespace cv::iib {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "../common/parallel.hpp"
-#include "camera_pose.hpp"
+#include "../pose/camera_pose.hpp"
 #include "colmap_model.hpp"
 #include "features.hpp"
 #include "lines.hpp"

@@ -7,7 +7,7 @@
 
 #include "opencv2/iib.hpp"
 #include "../common/parallel.hpp"
-#include "camera_pose.hpp"
+#include "../pose/camera_pose.hpp"
 
 namespace cv::iib {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "upright.hpp"
 
-#include "lens.hpp"
+#include "../pose/lens.hpp"
 
 namespace cv::iib {
 namespace {

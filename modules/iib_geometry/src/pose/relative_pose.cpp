@@ -4,7 +4,7 @@
 #include "epipolar_problem.hpp"
 #include "../common/points.hpp"
 #include "uncertainty.hpp"
-#include "verdict.hpp"
+#include "../verdict/verdict.hpp"
 
 namespace cv::iib {
 namespace {

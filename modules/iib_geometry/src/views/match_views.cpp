@@ -2,7 +2,7 @@
 #include "opencv2/iib/views.hpp"
 
 #include "../common/points.hpp"
-#include "../pose/verdict.hpp"
+#include "../verdict/verdict.hpp"
 #include "view_matches.hpp"
 
 namespace cv::iib {

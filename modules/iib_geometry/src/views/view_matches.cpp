@@ -2,8 +2,8 @@
 #include "view_matches.hpp"
 
 #include "../common/points.hpp"
-#include "../pose/verdict.hpp"
-#include "support.hpp"
+#include "../verdict/verdict.hpp"
+#include "../verdict/support.hpp"
 #include "two_view_geometry.hpp"
 #include "view_search.hpp"
 

@@ -2,7 +2,7 @@
 #include "view_search.hpp"
 
 #include "../common/points.hpp"
-#include "support.hpp"
+#include "../verdict/support.hpp"
 
 namespace cv::iib {
 namespace {

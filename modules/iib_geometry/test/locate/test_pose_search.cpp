@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "locate/pose_search.hpp"
-#include "map/camera_pose.hpp"
+#include "pose/camera_pose.hpp"
 #include "../test_precomp.hpp"
 
 namespace opencv_test {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "common/points.hpp"
-#include "pose/verdict.hpp"
-#include "two_cameras.hpp"
+#include "verdict/verdict.hpp"
+#include "../pose/two_cameras.hpp"
 
 namespace opencv_test {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "../derivatives.hpp"
-#include "map/camera_pose.hpp"
-#include "map/lens.hpp"
+#include "pose/camera_pose.hpp"
+#include "pose/lens.hpp"
 #include "../wall.hpp"
 
 namespace opencv_test {

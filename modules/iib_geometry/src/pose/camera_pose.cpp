@@ -7,7 +7,7 @@
 
 #include "opencv2/imgproc.hpp"
 #include "camera_pose.hpp"
-#include "../pose/two_views.hpp"
+#include "two_views.hpp"
 
 namespace cv::iib {
 namespace {

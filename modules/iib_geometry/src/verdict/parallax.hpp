@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "../pose/verdict.hpp"
+#include "verdict.hpp"
 
 namespace cv::iib {
 
