@@ -163,3 +163,14 @@ def logFalseAlarms(points1: ArrayLike, points2: ArrayLike, inliers: ArrayLike, e
     marks = np.ascontiguousarray(given.astype(bool), np.uint8).reshape(-1, 1)
     return float(_core.logFalseAlarms(_numbers(points1, 'points1'), _numbers(points2, 'points2'), marks, bool(epipolar),
                                       number(threshold, 'threshold')))
+
+
+def confidenceLimit(probability: float, dimensions: int) -> float:
+    """How far off an estimate may be, as ``cv2.iib.confidenceLimit``: the limit of error @ inv(covariance) @ error within which errors of poses,
+    alignments and refined points lie with this probability. They are Student's t with two degrees of freedom, not Gaussian.
+
+    :param probability: 0 or more and below 1.
+    :param dimensions: 1 or more: numbers in an error, such as 3 of a rotation, 2 of a direction or of a point.
+    :raises opencv_iib.error: for other values.
+    """
+    return float(_core.confidenceLimit(number(probability, 'probability'), integer(dimensions, 'dimensions')))
