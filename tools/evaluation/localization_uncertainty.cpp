@@ -87,32 +87,37 @@ std::unique_ptr<Localizer> localizerOf(const ViewFolder& mapped, int points)
     return localizer;
 }
 
-//! Its error, what it tells of it, and how many standard deviations it is off, squared: of the centre, the turn and both.
-std::vector<double> judged(const cv::iib::Location& found, const View& truth)
+//! Errors of an image's place and rotation; no errors where it was not found.
+void judgeLocation(const cv::iib::Location& found, const View& truth, const ErrorRows& rows)
 {
-    const cv::Matx33d toWorld = found.cameraFromWorld.rotation().t();
-    const cv::Vec3d moved = -(toWorld * found.cameraFromWorld.translation()) - truth.position,
-                    turned = cv::Affine3d(toWorld * truth.rotation.t()).rvec();
-    const cv::Matx33d centre = found.covariance.get_minor<3, 3>(0, 0),
-                      turn = found.covariance.get_minor<3, 3>(3, 3);
-    return {cv::norm(moved), std::sqrt(cv::trace(centre)), cv::norm(turned) * 180 / CV_PI,
-            std::sqrt(cv::trace(turn)) * 180 / CV_PI, squaredOf(moved, centre), squaredOf(turned, turn),
-            squaredOf(cv::Vec6d(moved[0], moved[1], moved[2], turned[0], turned[1], turned[2]),
-                    found.covariance)};
+    std::vector<JudgedError> centre, rotation;
+    if (found.found)
+    {
+        const cv::Matx33d toWorld = found.cameraFromWorld.rotation().t();
+        centre.push_back(judged(-(toWorld * found.cameraFromWorld.translation()) - truth.position,
+                found.covariance.get_minor<3, 3>(0, 0)));
+        rotation.push_back(judged(
+                cv::Affine3d(toWorld * truth.rotation.t()).rvec(), found.covariance.get_minor<3, 3>(3, 3)));
+    }
+    rows.add("centre of Localizer", centre, 3);
+    rows.add("rotation of Localizer", rotation, 3);
 }
 
 }  // namespace
 
 int localizationUncertainty(const Options& options, const std::vector<ImagePair>&)
 {
-    const Fields columns = {"set", "map", "light", "query", "matches", "inliers", "centre", "told_centre",
-            "rotation", "told_rotation", "squared_centre", "squared_rotation", "squared_pose"};
-    ResultTable table(options.out + "/localization_uncertainty.csv", columns, 4);
+    ResultTable table(options.out + "/localization_uncertainty.csv",
+            ErrorRows::columns({"set", "map", "light", "query"}), 5);
     std::vector<Task> tasks;
     for (const auto& place : findViewFolders(options.roots))
         for (const Search& search : searchesOf(baseName(place.first), place.second))
         {
-            const auto known = [&](const View& view) { return table.has(search.key(view)); };
+            const auto known = [&](const View& view) {
+                Fields key = search.key(view);
+                key.push_back("rotation of Localizer");
+                return table.has(key);
+            };
             const std::vector<View>& sought = search.sought.views;
             if (search.mapped.views.size() < 2 || std::all_of(sought.begin(), sought.end(), known))
                 continue;
@@ -121,15 +126,8 @@ int localizationUncertainty(const Options& options, const std::vector<ImagePair>
                 for (const View& view : search.sought.views)
                 {
                     const cv::Mat image = readImage(view.file, cv::IMREAD_GRAYSCALE);
-                    const cv::iib::Location found =
-                            localizer->localize(image, cameraOf(search.sought.camera, image.size()));
-                    Fields row = search.key(view);
-                    row.insert(row.end(), {std::to_string(found.matches), std::to_string(found.inliers)});
-                    if (found.found)
-                        for (double value : judged(found, view))
-                            row.push_back(text(value));
-                    row.resize(columns.size());  // empty where nothing is found
-                    table.append(row);
+                    judgeLocation(localizer->localize(image, cameraOf(search.sought.camera, image.size())),
+                            view, ErrorRows(table, search.key(view)));
                 }
             };
             tasks.push_back({search.set + "/" + search.map + "/" + search.light, run});

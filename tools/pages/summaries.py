@@ -11,6 +11,7 @@ import csv
 import datetime
 import hashlib
 import json
+import math
 import pathlib
 import random
 import re
@@ -303,7 +304,7 @@ def summarize_learned(source, target):
     write(target, list(lines[0]), (line.values() for line in lines))
 
 
-LEVELS = {'0.1': .584, '0.25': 1.213, '0.5': 2.366, '0.75': 4.108, '0.9': 6.251, '0.95': 7.815, '0.99': 11.345}  # chi-square, 3 degrees of freedom
+LEVELS = '0.1', '0.25', '0.5', '0.75', '0.9', '0.95', '0.99'
 DATA = {'amos_daynight': 'webcams over a day', 'tilde_webcam': 'webcams over a year', 'mefb_exposure': 'other exposures',
         'photometric_stereo': 'other lamps', 'middlebury2014': 'other lamps and exposures (rooms)', 'iib_demo': "the authors' scene",
         'strangers': 'images of different places', 'oxford_affine': 'other exposures (leuven)', 'strecha rectified': 'the same photographs, rectified', 'strecha': "photographs with a laser's poses, one light"}
@@ -316,20 +317,20 @@ def data_of(name, light):
 
 
 def summarize_uncertainty(source, target):
-    """Of each quantity and kind of data: how many pairs or images, in how many something was found, how many errors that gives, and which
-    share of them is inside what was told for a level."""
+    """For each quantity and kind of data: pairs or images, those with an answer, errors, the share of errors within the limit of each level, the
+    geometric mean of the reported standard deviations, and the mean logarithmic score."""
     found = {}
-    for row in read(source):
+    for row in read(source) + read(source.with_name('localization_uncertainty.csv')):
         count = int(row['count'])
-        found.setdefault((row['quantity'], data_of(row['set'], row['sequence'])), []).append([1, count > 0, count] + [int(row[level]) for level in LEVELS])
-    for row in read(source.with_name('localization_uncertainty.csv')):
-        for what in ('centre', 'rotation'):
-            squared = row['squared_' + what]
-            inside = [squared != '' and float(squared) < limit for limit in LEVELS.values()]
-            found.setdefault((what + ' of Localizer', data_of(row['set'], row['light'])), []).append([1, squared != '', squared != '', *inside])
-    lines = [[*key, *map(sum, zip(*counts))] for key, counts in sorted(found.items(), key=lambda item: ('Localizer' in item[0][0], item[0]))]
-    write(target, ['quantity', 'data', 'pairs', 'found', 'errors', *LEVELS],
-          ([*line[:5], *('%.5g' % (n / line[4]) if line[4] else '' for n in line[5:])] for line in lines))
+        key = row['quantity'], data_of(row['set'], row.get('light') or row['sequence'])
+        found.setdefault(key, []).append([1, count > 0, count, *(int(row[level]) for level in LEVELS), float(row['log_deviation']), float(row['score'])])
+    lines = []
+    for key, counts in sorted(found.items(), key=lambda item: ('Localizer' in item[0][0], item[0])):
+        pairs, answered, errors, *sums = map(sum, zip(*counts))
+        *shares, deviation, score = (value / max(errors, 1) for value in sums)
+        numbers = ['%.5g' % value for value in (*shares, math.exp(deviation), score)]
+        lines.append([*key, pairs, answered, errors, *(numbers if errors else [''] * len(numbers))])
+    write(target, ['quantity', 'data', 'pairs', 'found', 'errors', *LEVELS, 'deviation', 'score'], lines)
 
 
 OTHERS = {'differences.csv': ('estimators.csv', summarize_differences), 'gains.csv': ('detected_points.csv', summarize_gains), 'curves.csv': ('detected_points.csv', summarize_curves),

@@ -129,15 +129,16 @@ class Figures(unittest.TestCase):
     def test_uncertainty(self):
         with tempfile.TemporaryDirectory() as folder:
             source, target = pathlib.Path(folder, 'uncertainty.csv'), pathlib.Path(folder, 'out.csv')
-            source.write_text('set,sequence,quantity,count,0.1,0.25,0.5,0.75,0.9,0.95,0.99\nstrecha,a,points,4,0,0,1,2,3,4,4\n'
-                              'strecha,b,points,4,0,0,1,2,3,4,4\nstrecha,a,points,0,0,0,0,0,0,0,0\nfacade_31,dusk,points,0,0,0,0,0,0,0,0\n')
+            source.write_text('set,sequence,quantity,count,0.1,0.25,0.5,0.75,0.9,0.95,0.99,log_deviation,score\nstrecha,a,points,4,0,0,1,2,3,4,4,0,8\n'
+                              'strecha,b,points,4,0,0,1,2,3,4,4,0,0\nstrecha,a,points,0,0,0,0,0,0,0,0,0,0\nfacade_31,dusk,points,0,0,0,0,0,0,0,0,0,0\n')
             pathlib.Path(folder, 'localization_uncertainty.csv').write_text(
-                'set,light,squared_centre,squared_rotation\nroom_31,night,2.3,11.4\nroom_31,night,,\n')
+                'set,light,quantity,count,0.1,0.25,0.5,0.75,0.9,0.95,0.99,log_deviation,score\nroom_31,night,centre of Localizer,1,0,0,1,1,1,1,1,0,1\n'
+                'room_31,night,centre of Localizer,0,0,0,0,0,0,0,0,0,0\n')
             summaries.summarize_uncertainty(source, target)
-            self.assertEqual([line.split(',')[-10:] for line in target.read_text().splitlines()[1:]], [
-                ['3', '2', '8', '0', '0', '0.25', '0.5', '0.75', '1', '1'], ['1', '0', '0'] + 7 * [''],
-                ['2', '1', '1', '0', '0', '1', '1', '1', '1', '1'], ['2', '1', '1'] + 7 * ['0']])
-            self.assertEqual(2, target.read_text().count('rendered places, by night'))
+            self.assertEqual([line.split(',')[-12:] for line in target.read_text().splitlines()[1:]], [
+                ['3', '2', '8', '0', '0', '0.25', '0.5', '0.75', '1', '1', '1', '1'], ['1', '0', '0'] + 9 * [''],
+                ['2', '1', '1', '0', '0', '1', '1', '1', '1', '1', '1', '1']])
+            self.assertEqual(1, target.read_text().count('rendered places, by night'))
             with unittest.mock.patch.object(timings, 'RESULTS', pathlib.Path(folder)):
                 target.replace(source)
                 self.assertIn('| 3 | 2 | 8 | 25 | 100 | 100 |', tables.uncertainty())
