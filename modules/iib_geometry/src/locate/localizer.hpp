@@ -20,7 +20,12 @@ public:
 private:
     std::vector<size_t> near(const Affine3d& pose) const;
     std::vector<size_t> similar(const Mat& codes) const;
+    //! Of an image's keypoints with points that images of the map see.
+    std::vector<Match> matchesOf(
+            const Features& features, const std::vector<size_t>& compared, const Affine3d* prior) const;
     void locate(const Camera& camera, const Affine3d* prior, LocatedImage& found) const;
+    //! Whether the mirror image agrees better with the map: else symmetric parts of a mirrored image have a pose that is wrong.
+    bool isMirrored(const Camera& camera, const Mat& image, const Mat& mask, const LocatedImage& found) const;
     std::vector<size_t> similarInViews(const ImageViews& image) const;
     //! By views of the image and of the map's images that it was compared with.
     void locateInViews(const Camera& camera, const Mat& image, const Mat& mask, LocatedImage& found) const;

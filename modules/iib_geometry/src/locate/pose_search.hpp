@@ -29,6 +29,10 @@ Then it judges whether it is one.
 void findPose(const std::vector<Match>& matches, const Map& map, PreparedPictures& pictures,
         const Camera& camera, LocatedImage& found);
 
+/** Number of keypoints that agree with the pose which agrees with most of the most similar matches.
+@return 0 if there is no pose. */
+int countInliers(const std::vector<Match>& matches, const Camera& camera);
+
 //! What sorts first, of so many.
 template <typename Before> std::vector<size_t> best(size_t all, size_t count, Before before)
 {
