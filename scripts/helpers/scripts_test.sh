@@ -45,7 +45,6 @@ refused scripts/evaluate.sh --points=many .
 refused scripts/evaluate.sh --points=-1 .
 refused scripts/fuzz.sh no-such-target
 refused scripts/fuzz.sh -s soon
-refused scripts/fuzz.sh --document descriptor
 refused scripts/intree.sh --source=nowhere
 refused scripts/intree.sh --short unknown
 refused scripts/test.sh --sanitize=nothing

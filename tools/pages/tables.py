@@ -11,7 +11,6 @@ import re
 import sys
 
 import summaries
-from releases import artifacts, fuzzing, night
 from summaries import table
 from timings import RESULTS, chains, describing, machine, matching, rows, same_points, speed_claim, step_by_step
 
@@ -548,10 +547,16 @@ def photographs_of_many():
     return photographs(False)
 
 
+def night():
+    """The steps of the last night before a release."""
+    return table(['step', 'counted', 'minutes', 'commit', 'started (UTC)', 'result'],
+                 [['`%s`' % row['step'], *(row[key] for key in ('counted', 'minutes', 'commit', 'started', 'result'))] for row in rows('night.csv')])
+
+
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, views, views_chosen_on, views_affine, views_run, views_guide, how_sure, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
-    step_by_step, fuzzing, mapped_index, scale_run, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, classic_detectors, learned_claim, learned_limit, estimator_limit, learned_guide, pose_pairs,
-    detected_points, uncertainty, night, artifacts)}
+    step_by_step, mapped_index, scale_run, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, classic_detectors, learned_claim, learned_limit, estimator_limit, learned_guide, pose_pairs,
+    detected_points, uncertainty, night)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
