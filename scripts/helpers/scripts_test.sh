@@ -62,8 +62,6 @@ refused scripts/helpers/newcomer.sh bookworm trixie
 refused scripts/helpers/opencv_source.sh unknown
 refused scripts/helpers/servers_test.sh no-such-python
 refused scripts/helpers/python_test.sh no-such-library
-refused scripts/helpers/scale.sh --mapped=many
-refused scripts/helpers/scale.sh --mapped=0
 refused scripts/helpers/synthetic.sh
 refused scripts/helpers/versions.sh trixie/
 refused .ci/nightly no-such-step
@@ -87,7 +85,7 @@ chmod +x "$work/bin/program"
 for program in apt-get dpkg-query sudo cmake ctest ninja pip python3 debootstrap clang-format doxygen povray unshare git; do
     ln -s program "$work/bin/$program"
 done
-for program in demo opencv_perf_iib opencv_perf_iib_geometry tools/evaluation/iib_evaluation; do
+for program in demo opencv_perf_iib opencv_perf_iib_index opencv_perf_iib_geometry tools/evaluation/iib_evaluation; do
     mkdir -p "$(dirname "$work/copy/build/$program")"
     cp "$work/bin/program" "$work/copy/build/$program"
 done

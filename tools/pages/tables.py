@@ -8,7 +8,6 @@ import itertools
 import json
 import pathlib
 import re
-import sys
 
 import summaries
 from summaries import table
@@ -477,51 +476,6 @@ def uncertainty():
                    *('%.0f' % (100 * float(row[level])) if row[level] else '–' for level in ('0.5', '0.95', '0.99'))] for row in rows('uncertainty.csv')])
 
 
-def scale():
-    """What scripts/helpers/scale.sh wrote."""
-    return json.loads((RESULTS / 'scale.json').read_text())
-
-
-def by_two(one, two):
-    """How many times as fast two threads are; more than twice is noise, but for what a median is unsure of."""
-    if one > 2.1 * two:
-        sys.exit('scale.json: two threads are %.2f times as fast as one: measure again' % (one / two))
-    return '%.1f' % (one / two)
-
-
-def scale_run():
-    """When and where that was, and at which sizes of codes a second thread brought IIB little."""
-    data = scale()
-    found = {(r['bytes'], r['k'], r['threads']): r for r in data['flat']['rows']}
-    slow = sorted({key[0] for key, row in found.items() if key[2] == 1 and row['iib_ns'] < 1.5 * found[key[0], key[1], 2]['iib_ns']})
-    run = summaries.by(rows('runs.csv'), 'file')['scale.json']
-    text = 'Of %s, commit %s: %s. Searches take turns, and their medians of %d calls count.' % (data['date'], run['commit'], data['machine'], data['rounds'])
-    return text + ' At %s bytes the second thread\nbrought little in that run: those rows are to be measured again.' % ' and '.join(map(str, slow)) if slow else text
-
-
-def flat_search():
-    """Exact search beside faiss's flat index on one thread, and what a second thread brings."""
-    data, lines = scale(), []
-    found = {(r['bytes'], r['k'], r['threads']): r for r in data['flat']['rows']}
-    for width, k in sorted({key[:2] for key in found}):
-        one, two = found[width, k, 1], found[width, k, 2]
-        lines.append([str(width), str(k), '%.1f' % (one['faiss_ns'] / one['iib_ns']), by_two(one['iib_ns'], two['iib_ns'])])
-    return table(['bytes', 'k', 'times as fast as faiss ' + data['faiss'], 'times as fast by two threads'], lines)
-
-
-def mapped_index():
-    """A MappedIndex opened in a fresh process, and searched by a worker of Dask."""
-    data = scale()
-    index, workers = data['mapped'], data['workers']
-    return table(['%s codes of %d bytes' % (format(index['codes'], ','), index['bytes']), ''], [
-        ['written and on the disk, s', '%.0f' % index['write_seconds']],
-        ['opened, ms', '%.1f' % index['open_ms']],
-        ['resident after that, MB', '%.1f' % index['open_resident_mb']],
-        ['first query, which maps and checks all, ms', '%.0f' % index['first_search_ms']],
-        ['the next, ms', '%.0f' % index['second_search_ms']],
-        ['%d queries, k = 5, one worker of one thread, s' % workers['queries'], '%.1f' % workers['one_worker_seconds']]])
-
-
 def photographs(known=True):
     """Reconstructions of scenes with known poses, and what they keep in other light; or of one without."""
     found = [row for row in rows('photographs.csv') if (row['scene'] != 'liberty') == known]
@@ -556,7 +510,7 @@ def night():
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, views, views_chosen_on, views_affine, views_run, views_guide, how_sure, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
-    step_by_step, mapped_index, scale_run, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, classic_detectors, learned_claim, learned_limit, estimator_limit, learned_guide, pose_pairs,
+    step_by_step, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, classic_detectors, learned_claim, learned_limit, estimator_limit, learned_guide, pose_pairs,
     detected_points, uncertainty, night)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
