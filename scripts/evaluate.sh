@@ -18,7 +18,7 @@ while :; do
 done
 [ "$nonfree$contrib" != ON ] || fail "--nonfree needs --contrib"
 check_options "$root/tools/evaluation/main.cpp" "$@"
-[ "$operands" != 0 ] || fail "a folder of DATA is needed (--help tells more)"
+[ $# != 0 ] || fail "a folder of DATA is needed (--help tells more)"
 out="$root/results"
 previous=""
 for argument in "$@"; do
