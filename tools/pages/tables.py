@@ -322,10 +322,6 @@ def views():
     return by_change('photographs', ('matchViews', 'upright chain', 'ORB', 'SIFT'))
 
 
-def views_chosen_on():
-    return by_change('chosen on', ('matchViews', 'upright chain', 'ORB', 'SIFT'))
-
-
 def views_affine():
     return by_change('some photographs', ('matchViews', 'AffineFeature'))
 
@@ -410,7 +406,7 @@ def night():
 
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
-    drop_in, poses, presets, views, views_chosen_on, views_affine, photographs, photographs_of_many, describing, chains, same_points, matching, step_by_step,
+    drop_in, poses, presets, views, views_affine, photographs, photographs_of_many, describing, chains, same_points, matching, step_by_step,
     matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time,
     detected_points, uncertainty, night)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
