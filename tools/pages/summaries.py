@@ -3,14 +3,11 @@
 
 PAIRS: the folder of iib_evaluation's results, with a row for each pair of images. OUT gets means over the pairs of a group, one
 row each, with their number and the ends of the 95 % confidence interval of what is named last (low, high; bootstrap over scenes).
-With COMMIT and MACHINE, runs.csv tells of each file that was written of which run it is: of this one where PAIRS has other rows for it
-than when summaries were last made.
+With COMMIT (or several, of all rows) and MACHINE, runs.csv says of which run each file is whose summary changed.
 """
 import collections
 import csv
 import datetime
-import hashlib
-import json
 import math
 import pathlib
 import random
@@ -195,7 +192,9 @@ def summarize(source, target, groups_of, keys, values, *commit):
     for key, scenes in groups.items():
         every = [pair for scene in scenes.values() for pair in scene]
         ends = interval([[pair[-1] for pair in scene] for scene in scenes.values()])
-        lines[key] = [*key, len(every), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends), *commit]
+        line = [*key, str(len(every)), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends), *commit]
+        if lines.get(key, [])[:-1] != line[:-1] or not commit:  # what was not measured again keeps its commit
+            lines[key] = line
     write(target, ['place', *keys, 'pairs', *values, 'low', 'high', *['commit'] * len(commit)], (lines[key] for key in sorted(lines)))
 
 
@@ -349,21 +348,8 @@ def remember(file, found):
     write(file, ['file', 'commit', 'date', 'machine'], ([name, *runs[name]] for name in sorted(runs)))
 
 
-def record(source):
-    """Where it stands of which run a file of PAIRS is; it goes with the file, and then its commits are forgotten."""
-    return source.with_suffix('.run')
-
-
-def run_of(source, commit, machine):
-    """Commit, date and machine of a file of PAIRS: as last time unless its rows changed, and after the commits whose rows it had already."""
-    files = [source, source.with_name('localization_uncertainty.csv')][:1 + (source.name == 'uncertainty.csv')]
-    digest = hashlib.sha256(b''.join(file.read_bytes() for file in files if file.is_file())).hexdigest()
-    before, *run = json.loads(record(source).read_text()) if record(source).is_file() else [None]
-    if digest != before:
-        commits = dict.fromkeys(';'.join([*run[:1], commit]).split(';'))
-        run = [';'.join(commits), today(), machine]
-        record(source).write_text(json.dumps([digest, *run]))
-    return run
+def text_of(file):
+    return file.read_text() if file.is_file() else ''
 
 
 def main():
@@ -372,18 +358,14 @@ def main():
         return 2
     pairs, out = map(pathlib.Path, sys.argv[1:3])
 
-    def run(source):
-        return run_of(pairs / source, *sys.argv[3:]) if sys.argv[3:] else ['not recorded']
-    summarized = [name for name in PLANS if (pairs / name).is_file()]
-    for name in summarized:
-        summarize(pairs / name, out / name, *PLANS[name], *([run(name)[0]] if name in KEPT else []))
-    others = [name for name, (source, _) in OTHERS.items() if (pairs / source).is_file()]
-    for name in others:
-        source, make = OTHERS[name]
+    run = [sys.argv[3], today(), sys.argv[4]] if sys.argv[3:] else ['not recorded']
+    plans = {name: (name, lambda source, target: summarize(source, target, *PLANS[target.name], *run[:target.name in KEPT])) for name in PLANS}
+    made = {name: how for name, how in {**plans, **OTHERS}.items() if (pairs / how[0]).is_file()}
+    before = {name: text_of(out / name) for name in made}
+    for name, (source, make) in made.items():
         make(pairs / source, out / name)
-    if sys.argv[3:]:
-        sources = {**dict(zip(summarized, summarized)), **{name: OTHERS[name][0] for name in others if name != 'learned.csv'}}  # entered by hand
-        remember(out / 'runs.csv', {name: run(source) for name, source in sources.items()})
+    if sys.argv[3:]:  # the networks' own counts are entered by hand
+        remember(out / 'runs.csv', {name: run for name in made if text_of(out / name) != before[name] and name != 'learned.csv'})
     return 0
 
 

@@ -81,7 +81,7 @@ class Figures(unittest.TestCase):
         heads = 'set,sequence,target,detector,points,matches,estimator,error,milliseconds\n'
         with tempfile.TemporaryDirectory() as folder:
             source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'poses_by_time.csv')
-            for commit, line in (('a', 'facade_33,night,0-1,ORB,1000,m,e,0,7'), ('b', 'facade_33,night,0-1,AKAZE,1000,m,e,5,9'), ('c', 'facade_33,night,0-1,ORB,1000,m,e,5,8')):
+            for commit, line in (('a', 'facade_33,night,0-1,ORB,1000,m,e,0,7'), ('z', 'facade_33,night,0-1,ORB,1000,m,e,0,7'), ('b', 'facade_33,night,0-1,AKAZE,1000,m,e,5,9'), ('c', 'facade_33,night,0-1,ORB,1000,m,e,5,8')):
                 source.write_text(heads + line)
                 summaries.summarize(source, target, *summaries.PLANS['poses_by_time.csv'], commit)
             found = summaries.read(target)
@@ -196,10 +196,7 @@ class Figures(unittest.TestCase):
             other = 'matching.csv,old,1999-01-01,m'
             self.assertEqual(runs(heads, 'a', '2001-01-01'), ['comparison.csv,a,2001-01-01,on a', other])
             self.assertEqual(runs(heads, 'b', '2002-02-02'), ['comparison.csv,a,2001-01-01,on a', other])  # nothing was measured
-            more = heads + 'r,t,ORB,ORB,1,1,1,1,1\n'
-            self.assertEqual(runs(more, 'b;c', '2003-03-03'), ['comparison.csv,a;b;c,2003-03-03,on b;c', other])  # a's rows stay
-            summaries.record(pairs / 'comparison.csv').unlink()
-            self.assertEqual(runs(more, 'd', '2004-04-04'), ['comparison.csv,d,2004-04-04,on d', other])
+            self.assertEqual(runs(heads + 'r,t,ORB,ORB,1,1,1,1,1\n', 'a;c', '2003-03-03'), ['comparison.csv,a;c,2003-03-03,on a;c', other])
 
     def test_no_error_is_told_where_nothing_was_found(self):
         with tempfile.TemporaryDirectory() as folder:

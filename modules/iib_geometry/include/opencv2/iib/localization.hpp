@@ -157,11 +157,8 @@ struct Location
 
 The codes of an image vote for the map's images, and those that look most like it are matched with it. The pose comes from
 the points of the map that they see; the matches that agree with it are refined against the map's images (refineMatches), and
-the pose with them. It needs fifteen inliers and two in a hundred matches more, that are more than chance (poses that agree as
-well are expected less than once in a thousand tries among wrong matches, counted in matches and in places as findRelativePose
-does), and a place that is known to a tenth of the distance to its points (three standard deviations). So images of places that are
-not in the map get none; how many were tried, and how many of a map's own places are found, is on the documentation's pages of maps
-and of uncertainties.
+the pose with them. A pose needs fifteen inliers and two in a hundred matches more, the significance that findRelativePose asks for, and a
+position that is known to a tenth of the distance to its points (three standard deviations). So images of other places get none.
 
 An image that has no pose after that, and no prior, is matched in views with the five images of the map that look most like it at any
 rotation (as matchViews, without tilts): so images rotated by any angle and seen from up to four times nearer or farther are found. That takes 5 to
