@@ -5,7 +5,7 @@ import copy
 import io
 import json
 import os
-from typing import Any, NamedTuple, Optional, Sequence, Union
+from typing import Any, NamedTuple, Optional, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from opencv_iib.demo import GOOD, INK, OTHER, draw
 from opencv_iib.enums import Orientation
 from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.functions import match
-from opencv_iib.geometry import FoundPose, NoPose, findRelativePose
+from opencv_iib.geometry import RelativePose, findRelativePose
 from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.refinement import PropagatedMatches, RefinedMatches, prepared, propagateMatches
 from opencv_iib.rotation import matchRotated
@@ -38,7 +38,7 @@ class Measured(NamedTuple):
 
     matches: RefinedMatches
     bits: NDArray[np.int32]  #: of each match, that differ; -1 where the images were matched in views of them
-    pose: Union[FoundPose, NoPose, None]  #: None without cameras
+    pose: Optional[RelativePose]  #: None without cameras
     found: bool  #: there is a pose, or without cameras more matches than chance may give agree with one epipolar geometry or homography
     view: NDArray[np.float64]  #: 3 x 3: approximate affine map from pixels of the first image to pixels of the second
     rotation: float = 0  #: degrees by which the second image is rotated against the first, clockwise, besides EXIF's orientation; 0: less than 8
@@ -283,6 +283,6 @@ class _Pair:
         seen = self._visible(*found[1:3])
         return PropagatedMatches(*(each[seen] for each in found)), int(seen[:len(given)].sum())
 
-    def _pose(self, *points: np.ndarray, scale: float = 0) -> Union[FoundPose, NoPose]:
+    def _pose(self, *points: np.ndarray, scale: float = 0) -> RelativePose:
         a, b = (lens.undistorted(some) for some, lens in zip(points, self.lenses))
         return findRelativePose(a, b, self.lenses[0].matrix, self.lenses[1].matrix, scale)
