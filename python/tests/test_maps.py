@@ -178,11 +178,6 @@ class Maps(OnWall):
         arguments = 'map', '--model', self.model, '--images', self.images, '--points', '300', '--out'
         self.check_error('--force', *arguments, out)
         self.assertEqual(run_command(*arguments, out, '--force')[0], 0)
-        foreign = self.path('mine')
-        os.makedirs(foreign)
-        Path(foreign, 'letter.txt').touch()
-        self.check_error('letter.txt', *arguments, foreign, '--force')
-        self.check_error('holds letter.txt', 'localize', '--map', self.map, '--images', self.dark, '--out', foreign)
 
     def test_a_map_is_not_replaced_by_one_that_leaves_images_out(self):
         out, images, empty = self.path('map'), self.path('images'), self.path('empty')

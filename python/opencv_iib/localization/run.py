@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core, error
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._exif import exif_focal_length, orientation_of_photograph
-from opencv_iib._files import check_folder, check_is_folder, check_outputs, new_results, read_bytes, write_whole
+from opencv_iib._files import Results, check_folder, check_is_folder, check_outputs, read_bytes, write_whole
 from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, is_utf8, read_grey, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
@@ -166,7 +166,6 @@ def _write_picture(path: str, image: str, camera: Camera, location: Location) ->
         begin, end = ([round(8 * v) for v in place] for place in (seen, mapped))  # eighths of pixels, see shift
         cv2.line(picture, begin, end, (0, 0, 255), 1, cv2.LINE_AA, 3)
         cv2.circle(picture, begin, 3 * 8, (0, 200, 0), 1, cv2.LINE_AA, 3)
-    os.makedirs(os.path.dirname(path), exist_ok=True)
     write_picture(path, picture)
 
 
@@ -232,7 +231,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     :param map: folder of a map.
     :param out: a name in .csv, or '-' for standard output, for the table ``frames.csv`` alone: of each image whether there is a pose, or why
         not, its covariance and the pose. Else a folder to write: ``trajectory.txt``, ``frames.csv``, a COLMAP model of the localized images and, with
-        `pictures`, ``matches/``. Results come there when all are complete; older ones are replaced.
+        `pictures`, ``matches/``. Older results there are replaced.
     :param camera: of all images, as Localizer.localize takes it; None for each one's own, by its EXIF data or the map.
     :param workers: threads; None for one a core.
     :param log: told of each image without a pose, and why.
@@ -275,15 +274,15 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
         location = localizer.localize(image, camera, last, *more)
         last = location.cam_from_world if sequence else None
         return location
-    with contextlib.nullcontext('') if table_alone else new_results(out, 'localize') as part:
+    with contextlib.nullcontext() if table_alone else Results(out, 'localize') as results:
         localizer = _localizer(map, 0, lines)
         for name, own, location in locate(find_next, localizer.cameras, images, names, given, workers, log, exif, mask, max_size):
             location = Location(reason=location) if own is None else location
             row = [name, int(location.found), location.reason, location.matches, location.inliers]
             if own is not None and location.covariance is not None:
                 row += [f'{value:.6g}' for value in location.covariance[np.triu_indices(6)]]
-                if pictures:
-                    _write_picture(os.path.join(part, 'matches', labels[name] + '.png'), os.path.join(images, name), own, location)
+                if pictures and results is not None:
+                    _write_picture(results.place(f'matches/{labels[name]}.png'), os.path.join(images, name), own, location)
             else:
                 log(f'{name}: {location.reason}')
             frames.append(row)
@@ -295,17 +294,14 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
             if smoothed.reason:
                 log(smoothed.reason)
         table = _table(frames, poses)
-        if table_alone:
-            write_whole(out, table)
-            return sum(pose is not None for pose in poses), len(names)
-        write_whole(os.path.join(part, 'frames.csv'), table)
-        with open(os.path.join(part, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory:
-            trajectory.write(f'# name {" ".join(POSE)}\n')
-            trajectory.writelines(f'{labels[name]} {" ".join(_numbers(pose))}\n' for name, pose in zip(names, poses) if pose is not None)
-        posed = [_core.PosedImage(name, own, pose, location.pixels) for name, own, pose, location in zip(names, cameras, poses, found)
-                 if pose is not None and own is not None]
-        if posed:  # no reader takes a model of none
-            _core.writeModel(part, posed)
+        write_whole(out if results is None else results.place('frames.csv'), table)
+        if results is not None:
+            posed_lines = [f'{labels[name]} {" ".join(_numbers(pose))}\n' for name, pose in zip(names, poses) if pose is not None]
+            write_whole(results.place('trajectory.txt'), ''.join([f'# name {" ".join(POSE)}\n', *posed_lines]).encode())
+            posed = [_core.PosedImage(name, own, pose, location.pixels) for name, own, pose, location in zip(names, cameras, poses, found)
+                     if pose is not None and own is not None]
+            if posed:  # no reader takes a model of none
+                _core.writeModel(os.path.dirname([results.place(name + '.bin') for name in ('cameras', 'images', 'points3D')][0]), posed)
     return sum(pose is not None for pose in poses), len(names)
 
 
