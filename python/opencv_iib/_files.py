@@ -62,14 +62,11 @@ def check_outputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
             if is_same(path, other):
                 raise TakenFile(f'{path} is {what} too: give what is written a name of its own')
         taken[path] = 'another output'
-        target = ''
         if is_open_file(os.fspath(path)):
             check_open_file(os.fspath(path))
         else:
-            target = output_file(os.fspath(path))
-        if target and (os.path.isfile(target) or not os.path.exists(target)):
             try:
-                _core.WholeFile(target).discard()
+                _core.WholeFile(output_file(os.fspath(path))).discard()
             except _core.error as e:
                 raise OSError(str(e)) from None
 
@@ -114,15 +111,11 @@ def write_whole(path: str, content: bytes) -> None:
 
     :raises OSError: for a full disk too; the old file stays.
     """
-    target = '' if is_open_file(path) else output_file(path)
     try:
-        if not target:
+        if is_open_file(path):
             write_to_open_file(path, content)
-        elif os.path.exists(target) and not os.path.isfile(target):  # a device, which cannot be replaced
-            with open(target, 'wb') as file:
-                file.write(content)
         else:
-            with replaced(target) as (part,), open(part, 'wb') as file:
+            with replaced(output_file(path)) as (part,), open(part, 'wb') as file:
                 file.write(content)
     except OSError as e:
         raise type(e)(f'{path} cannot be written: {e.strerror or e}') from None

@@ -114,7 +114,7 @@ class Measured(NamedTuple):
 def check_suffix(path: Path) -> None:
     """:raises InvalidOption: for a file of a suffix that Measured.save does not know."""
     name = os.fspath(path)
-    if not (is_open_file(name) or name.lower().endswith(SUFFIXES) or os.path.exists(name) and not os.path.isfile(name)):
+    if not (is_open_file(name) or name.lower().endswith(SUFFIXES)):
         raise InvalidOption(f'{name}: end its name in {", ".join(SUFFIXES[:-1])} or {SUFFIXES[-1]}')
 
 
