@@ -18,7 +18,8 @@ from opencv_iib import __version__
 from opencv_iib._arguments import InvalidOption, MissingFile, Path, sequence
 from opencv_iib._exif import TIFF, exif_orientation
 from opencv_iib._files import Results, check_folder, check_images, is_in, is_same, read_bytes, write_whole
-from opencv_iib._images import FORMATS, Masks, can_be, decode_all, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
+from opencv_iib._image_file import Masks
+from opencv_iib._images import FORMATS, can_be, decode_all, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note

@@ -9,6 +9,7 @@ from typing import Any, Optional
 import numpy as np
 
 from opencv_iib._arguments import InvalidOption, Path, integer
+from opencv_iib._images import reduced, resized_mask
 from opencv_iib._upright import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector
@@ -77,25 +78,6 @@ def check_max_size(max_size: int) -> None:
     """:raises InvalidOption: for fewer pixels than show anything."""
     if integer(max_size, 'max_size', 64) and not MIN_SIZE <= max_size:
         raise InvalidOption(f'max_size is {max_size}: it must be at least {MIN_SIZE} pixels, or 0')
-
-
-def reduced(image: np.ndarray, max_size: int) -> np.ndarray:
-    """Of so many pixels at the longer side, if it has more and `max_size` is not 0."""
-    height, width = image.shape[:2]
-    longer = max(width, height)
-    if not 0 < max_size < longer:
-        return image
-    import cv2
-    size = [max(1, round(side * max_size / longer)) for side in (width, height)]
-    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA))
-
-
-def resized_mask(mask: np.ndarray, image: np.ndarray) -> np.ndarray:
-    """Of the size that the image was reduced to."""
-    if mask.shape == image.shape[:2]:
-        return mask
-    import cv2
-    return np.asarray(cv2.resize(mask, image.shape[1::-1], interpolation=cv2.INTER_NEAREST))
 
 
 class Features:

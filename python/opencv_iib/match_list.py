@@ -17,7 +17,8 @@ from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._camera import AnyCamera, Camera, as_camera
 from opencv_iib._files import Results, check_folder, check_is_folder, check_outputs, only_writer, output_file, remove_parts, replaced, write_whole
 from opencv_iib._hdf5 import import_h5py, new_hdf5
-from opencv_iib._images import Masks, check_sizes, find_images
+from opencv_iib._image_file import Masks, check_sizes
+from opencv_iib._images import find_images
 from opencv_iib._pairs import check_list, pair_name, tiles
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._partial import LOGS, open_partial, remove_logs

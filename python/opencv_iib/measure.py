@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 
 from opencv_iib._arguments import InvalidOption, Path, sequence
 from opencv_iib._camera import AnyCamera, Camera, as_camera
+from opencv_iib._drawing import GOOD, INK, OTHER, draw
 from opencv_iib._files import check_images, check_outputs, write_whole
-from opencv_iib._images import Masks, check_picture, import_cv2, read_with_orientation, write_picture
+from opencv_iib._image_file import ImageFile, Masks
+from opencv_iib._images import check_picture, import_cv2, write_picture
 from opencv_iib._streams import is_open_file
 from opencv_iib._two_views import show_the_same
 from opencv_iib._upright import Turn, upright
-from opencv_iib.demo import GOOD, INK, OTHER, draw
 from opencv_iib.enums import Orientation
 from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.functions import match
@@ -185,20 +186,21 @@ class View(NamedTuple):
         """:param name: by which it has its mask.
         :param described: its rows and codes, if they are known.
         :raises ValueError: for a file that is no image, or of another size than its camera's or its mask."""
-        stored, orientation = read_with_orientation(path, features.options.exif, of_camera=lens is not None)
+        try:
+            file = ImageFile(path, features.options.exif)
+            stored, orientation = file.colour, file.orientation if lens is None else file.orientation_of_camera
+            mask = masks.of(name, stored)
+        except ValueError as e:
+            raise type(e)(f'{path}: {e}') from None
         height, width = stored.shape[:2]
         if lens is not None and (lens.width, lens.height) != (width, height):
             raise InvalidOption(f'{path} has {width} x {height} pixels, its camera {lens.width} x {lens.height}: give the '
                                 f"image's own camera, PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in "
                                 'pixels')
-        image = upright(stored, orientation)
-        try:
-            mask = masks.of(name, stored)
-        except ValueError as e:
-            raise InvalidOption(f'{path}: {e}') from None
+        image, mask = upright(stored, orientation), None if mask is None else upright(mask, orientation)
         if described is None:
-            described = features(image, mask=None if mask is None else upright(mask, orientation))
-        return cls(stored, image, None if mask is None else upright(mask, orientation), Turn(orientation, width, height), lens, *described)
+            described = features(image, mask=mask)
+        return cls(stored, image, mask, Turn(orientation, width, height), lens, *described)
 
 
 def measure(first: View, second: View, features: Features) -> Measured:

@@ -14,9 +14,10 @@ import opencv_iib
 from opencv_iib import _pairs as pair_lists
 from opencv_iib._arguments import InvalidOption, Path, integer, number, sequence
 from opencv_iib._camera import Camera
-from opencv_iib._exif import exif_focal_length, gps_place, orientation_of_photograph
-from opencv_iib._files import check_is_folder, check_outputs, only_writer, output_file, read_bytes
-from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, is_listable, is_utf8
+from opencv_iib._exif import exif_focal_length, gps_place
+from opencv_iib._files import check_is_folder, check_outputs, only_writer, output_file
+from opencv_iib._image_file import ImageFile, Masks, check_sizes
+from opencv_iib._images import find_images, import_cv2, is_listable, is_utf8
 from opencv_iib._parallel import Cluster, Crew, Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
@@ -116,17 +117,15 @@ def describe_image(folder: str, options: Options, name: str
                                 'by the same name')
     if not is_utf8(name):
         raise ValueError('its name is not UTF-8')
-    data = read_bytes(os.path.join(folder, name))
-    image = decode_grey(data)
-    rows, codes = _features(options.features)(image, orientation_of_photograph(data, options.features.exif),
-                                              Masks(options.features.mask).of(name, image))
-    height, width = image.shape
+    file = ImageFile(os.path.join(folder, name), options.features.exif)
+    rows, codes = _features(options.features)(file.grey, file.orientation_of_camera, Masks(options.features.mask).of(name, file.grey))
+    height, width = file.grey.shape
     camera = options.camera_for(name)
     if camera is not None and (camera.width, camera.height) != (width, height):
         raise ValueError(f'it has {width} x {height} pixels, its camera {camera.width} x {camera.height}')
     if camera is not None:
         return to_colmap(rows), codes, width, height, camera.model, camera.params, True
-    focal = options.focal or exif_focal_length(data, width, height)
+    focal = options.focal or exif_focal_length(file.data, width, height)
     focals, others = CAMERA_MODELS[options.camera_model]
     params = [focal or 1.2 * max(width, height)] * focals + [width / 2, height / 2] + [0] * others
     return to_colmap(rows), codes, width, height, options.camera_model, params, bool(focal)

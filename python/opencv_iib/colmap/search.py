@@ -12,8 +12,8 @@ from typing import Iterable, NamedTuple, Optional
 
 import numpy as np
 
-from opencv_iib._files import read_bytes
-from opencv_iib._images import Masks, decode_grey
+from opencv_iib._image_file import ImageFile, Masks
+from opencv_iib._images import reduced, resized_mask
 from opencv_iib._parallel import Crew, in_parallel
 from opencv_iib._progress import Progress
 from opencv_iib._two_views import MIN_INLIERS, magsac
@@ -21,7 +21,7 @@ from opencv_iib.colmap.database import Database
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import detect_rows
 from opencv_iib.enums import Orientation
-from opencv_iib.features import FeatureOptions, reduced, resized_mask
+from opencv_iib.features import FeatureOptions
 from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.views import matchViews
 
@@ -46,10 +46,8 @@ class Found(NamedTuple):
 
 
 def _read(folder: str, options: FeatureOptions, name: str) -> tuple[np.ndarray, Optional[np.ndarray], np.ndarray]:
-    """An image, reduced as for its features, its mask, and pixels of the file a pixel, along x and y."""
-    image = decode_grey(read_bytes(os.path.join(folder, name)))
-    mask, small = Masks(options.mask).of(name, image), reduced(image, options.max_size)
-    return small, None if mask is None else resized_mask(mask, small), np.array(image.shape[1::-1]) / small.shape[1::-1]
+    """As ImageFile.small, reduced as for its features."""
+    return ImageFile(os.path.join(folder, name)).small(options.max_size, Masks(options.mask), name)
 
 
 def describe_views(folder: str, options: FeatureOptions, job: tuple[str, bool]) -> list[np.ndarray]:
@@ -61,7 +59,7 @@ def describe_views(folder: str, options: FeatureOptions, job: tuple[str, bool]) 
     codes = []
     for scale in SCALES if in_all else SCALES[:1]:
         view = reduced(image, round(scale * min(VOTING_SIZE, max(image.shape))))
-        rows = detect_rows(extractor, view, None if mask is None else resized_mask(mask, view))
+        rows = detect_rows(extractor, view, resized_mask(mask, view))
         for angle in ANGLES if in_all else ANGLES[:1]:
             rows[:, 3] = angle
             codes.append(extractor.compute(view, rows)[1])

@@ -12,14 +12,15 @@ from numpy.typing import NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import InvalidOption, Path, integer
 from opencv_iib._arrays import as_mask
-from opencv_iib._exif import orientation_of_photograph
-from opencv_iib._files import OF_FILE_MANAGERS, check_folder, check_is_folder, read_bytes
-from opencv_iib._images import Masks, decode_grey, in_order
+from opencv_iib._camera import AnyCamera, Camera
+from opencv_iib._files import OF_FILE_MANAGERS, check_folder, check_is_folder
+from opencv_iib._image_file import ImageFile, Masks
+from opencv_iib._images import in_order
 from opencv_iib._parallel import thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib.features import MAX_POINTS, check_max_size
-from opencv_iib.localization.localizer import AnyCamera, Camera, Location
+from opencv_iib.localization.localizer import Location
 from opencv_iib.localization.run import images_of, locate
 
 
@@ -83,9 +84,8 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
         if stop.is_set():
             raise KeyboardInterrupt
         try:
-            data = read_bytes(os.path.join(images, os.fsdecode(name)))
-            image = decode_grey(data)
-            found = image, orientation_of_photograph(data, exif), as_mask(masks.of(os.fsdecode(name), image))
+            file = ImageFile(os.path.join(images, os.fsdecode(name)), exif)
+            found = file.grey, file.orientation_of_camera, as_mask(masks.of(os.fsdecode(name), file.grey))
             read_any = True
             return found
         except (ValueError, OSError) as e:

@@ -15,16 +15,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core, error
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._exif import exif_focal_length, orientation_of_photograph
-from opencv_iib._files import Results, check_folder, check_is_folder, check_outputs, read_bytes, write_whole
-from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, is_utf8, read_grey, write_picture
+from opencv_iib._camera import AnyCamera, Camera, as_camera
+from opencv_iib._exif import exif_focal_length
+from opencv_iib._files import Results, check_folder, check_is_folder, check_outputs, write_whole
+from opencv_iib._image_file import ImageFile, Masks, check_sizes
+from opencv_iib._images import find_images, import_cv2, is_utf8, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import is_open_file, note
 from opencv_iib._upright import BACK
-from opencv_iib.features import check_max_size, reduced, resized_mask
+from opencv_iib.features import check_max_size
 from opencv_iib.localization.imu_file import by_time, read_imu
-from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Location, as_camera
+from opencv_iib.localization.localizer import Localizer, Location
 from opencv_iib.localization.smoothing import smooth_poses
 
 SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly, and COLMAP of a camera an image
@@ -76,15 +78,14 @@ def _common_camera(cameras: tuple[Camera, ...]) -> Optional[Camera]:
 def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], exif: bool, masks: Masks, max_size: int, name: str
             ) -> tuple[Camera, Location]:
     """An image's camera, and what `find` finds in it, reduced to this longer side if it is larger; pixels are its own."""
-    data = read_bytes(os.path.join(folder, name))
-    grey, orientation = decode_grey(data), orientation_of_photograph(data, exif)
-    own = camera or find_camera(data, grey.shape[1], grey.shape[0], known, orientation)
-    mask, small = masks.of(name if folder else os.path.basename(name), grey), reduced(grey, max_size)
-    if small is grey:
-        return own, find(name, grey, own, orientation, mask)
-    size = np.array(small.shape[1::-1])
-    found = find(name, small, own.resized(*size), orientation, None if mask is None else resized_mask(mask, small))
-    pixels = (found.pixels + .5) * (np.array(grey.shape[1::-1]) / size) - .5  # the centre of the first one is 0
+    file = ImageFile(os.path.join(folder, name), exif)
+    small, mask, scale = file.small(max_size, masks, name if folder else os.path.basename(name))
+    orientation = file.orientation_of_camera
+    own = camera or find_camera(file.data, file.grey.shape[1], file.grey.shape[0], known, orientation)
+    if small is file.grey:
+        return own, find(name, small, own, orientation, mask)
+    found = find(name, small, own.resized(*small.shape[::-1]), orientation, mask)
+    pixels = (found.pixels + .5) * scale - .5  # the centre of the first one is 0
     return own, Location(found.cam_from_world, found.covariance, found.reason, found.matches, found.inliers, pixels, found.points)
 
 
@@ -160,7 +161,7 @@ def labels_of(names: Sequence[str]) -> dict[str, str]:
 
 def _write_picture(path: str, image: str, camera: Camera, location: Location) -> None:
     cv2 = import_cv2()
-    picture = cv2.cvtColor(read_grey(image), cv2.COLOR_GRAY2BGR)
+    picture = cv2.cvtColor(ImageFile(image).grey, cv2.COLOR_GRAY2BGR)
     pose = np.asarray(location.cam_from_world)
     for seen, mapped in zip(location.pixels, camera.project(location.points @ pose[:3, :3].T + pose[:3, 3])):
         begin, end = ([round(8 * v) for v in place] for place in (seen, mapped))  # eighths of pixels, see shift
