@@ -53,3 +53,18 @@ def number(value: Any, name: str) -> float:
     if isinstance(value, (str, bytes)) or not hasattr(value, '__float__'):
         raise TypeError(f'{name}: a number is needed, not {value!r}')
     return float(value)
+
+
+MAX_COUNT = 1 << 30  # what the int of a detector holds
+
+
+def check_choice(value: Any, name: str, known: Iterable[str]) -> None:
+    """:raises InvalidOption: for a value that is none of these."""
+    if value not in known:
+        raise InvalidOption(f'no {name} {value}: there are {", ".join(known)}')
+
+
+def check_count(value: Any, name: str, most: int = MAX_COUNT) -> None:
+    """:raises InvalidOption: for less than 1, or more than this."""
+    if not 1 <= integer(value, name, 64) <= most:
+        raise InvalidOption(f'{name} is {value}: it must be 1 to {most}')

@@ -8,19 +8,16 @@ from typing import Any, Callable, Iterable, Iterator, Optional, TypeVar, Union
 
 import numpy as np
 
-from opencv_iib._arguments import InvalidOption, integer
+from opencv_iib._arguments import check_count
 
 T = TypeVar('T')
 R = TypeVar('R')
-
-
 MAX_THREADS = 1024
 
 
 def thread_count(workers: Optional[int]) -> int:
     """As many, or one a core for None. :raises InvalidOption: for less than 1, or more than a system can have."""
-    if workers is not None and not 1 <= integer(workers, 'workers', 64) <= MAX_THREADS:
-        raise InvalidOption(f'workers is {workers}: it must be 1 to {MAX_THREADS}')
+    check_count(1 if workers is None else workers, 'workers', MAX_THREADS)
     return workers or os.cpu_count() or 1
 
 
@@ -76,9 +73,10 @@ class Cluster:
 Crew = Union[Threads, Cluster]
 
 
-def in_parallel(function: Callable[[T], R], jobs: Iterable[T], crew: Crew) -> Iterator[tuple[T, Any]]:
-    """Has jobs done, a few ahead: (job, result or exception), in order, in bounded memory.
+def in_parallel(function: Callable[[T], R], jobs: Iterable[T], crew: Crew, told: tuple[type[Exception], ...] = ()) -> Iterator[tuple[T, Any]]:
+    """Has jobs done, a few ahead: each job and its result, in order, in bounded memory.
 
+    :param told: exceptions that are results; others are raised.
     :raises ConnectionError: if those who work have gone.
     """
     waiting: collections.deque[tuple[T, concurrent.futures.Future[R]]] = collections.deque()
@@ -86,7 +84,7 @@ def in_parallel(function: Callable[[T], R], jobs: Iterable[T], crew: Crew) -> It
     def first() -> tuple[T, Any]:
         job, future = waiting.popleft()
         failed = future.exception()
-        if failed is not None and not isinstance(failed, Exception):
+        if failed is not None and not isinstance(failed, told):
             raise failed
         return job, future.result() if failed is None else failed
 

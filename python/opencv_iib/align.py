@@ -15,11 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import __version__
-from opencv_iib._arguments import InvalidOption, MissingFile, Path, sequence
-from opencv_iib._exif import TIFF, exif_orientation
-from opencv_iib._files import Results, check_folder, check_images, is_in, is_same, read_bytes, write_whole
-from opencv_iib._image_file import Masks
-from opencv_iib._images import FORMATS, can_be, decode_all, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
+from opencv_iib._arguments import InvalidOption, MissingFile, Path, check_choice, sequence
+from opencv_iib._files import Results, check_folder, check_images, is_in, is_same, write_whole
+from opencv_iib._image_file import ImageFile, Masks
+from opencv_iib._images import FORMATS, can_be, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
@@ -90,9 +89,8 @@ class _Options(NamedTuple):
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
         check_max_size(self.max_size)
-        for name, value, known in (('format', self.format or 'PNG', FORMATS), ('interpolation', self.interpolation, INTERPOLATIONS)):
-            if value not in known:
-                raise InvalidOption(f'no {name} {value}: there are {", ".join(known)}')
+        check_choice(self.format or 'PNG', 'format', FORMATS)
+        check_choice(self.interpolation, 'interpolation', INTERPOLATIONS)
 
 
 def align(reference: Path, images: Sequence[Path], out: Path, model: int = AlignmentModel.HOMOGRAPHY, exif: bool = True,
@@ -144,19 +142,13 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
             if part not in (None, old_part):
                 results.remove([STATE])
 
-        def do(job: Callable[[str], Aligned], missing: list[str]) -> None:
-            for path, found in in_parallel(job, missing, crew):
-                if isinstance(found, Exception):
-                    raise found
-                done[path] = found
-
         def align_one(path: str) -> Aligned:
             found = work.align(path, names[path], part)
             progress.step()
             return found
         forget()
         try:
-            do(align_one, [path for path in paths if path not in done])
+            done.update(in_parallel(align_one, [path for path in paths if path not in done], crew))
             part = part or _common(work.whole, done.values())
         except (Exception, KeyboardInterrupt) as e:
             if not done or part is None:
@@ -168,8 +160,8 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
             for file in (name, f'{VIEWS}/{name}.jpg'):
                 if name and os.path.exists(os.path.join(results.folder, file)):
                     results.place(file)
-        do(lambda path: work.write(path, done[path], names[path], part),
-           [path for path, each in done.items() if each.transform and each.file not in results.written])
+        missing = [path for path, each in done.items() if each.transform and each.file not in results.written]
+        done.update(in_parallel(lambda path: work.write(path, done[path], names[path], part), missing, crew))
         ordered = [done[path] for path in paths if path in done]
         _write_tables(results, work.write_reference(part), os.path.basename(reference), ordered, part)
         state = {'settings': settings, 'part': part, 'images': [[stamps[each.name], each] for each in ordered if each.size]}
@@ -280,11 +272,10 @@ class _View:
     def __init__(self, path: str, options: _Options, masks: Masks, factor: int = 0) -> None:
         """:param factor: to reduce by; 0: the least whole one for the largest size, which keeps the centres of pixels.
         :raises ValueError: also for an image that cv2 cannot lay onto another, or others onto it."""
-        data = read_bytes(path)
-        self.pages, self.left_out, self.no_data, self.geo = decode_all(data)
+        file = ImageFile(path, options.exif)
+        self.pages, self.left_out, self.no_data, self.geo = file.pages
         if self.no_data and not all(can_be(self.no_data, page.dtype) for page in self.pages):
             self.no_data = ''
-        self.suffix = '.jpg' if data.startswith(b'\xff\xd8') else '.tif' if data.startswith(TIFF) else '.png'
         first = self.pages[0]
         self.size = list(first.shape[1::-1])
         if max(self.size) > LARGEST_SIDE:
@@ -294,7 +285,7 @@ class _View:
             whole = np.asarray(~(holes if first.ndim == 2 else holes.any(axis=2)), np.uint8)
             mask = whole if mask is None else mask * whole
             first = np.where(holes, np.nan, first)
-        orientation = exif_orientation(data) if options.exif else 1
+        self.suffix, orientation = file.suffix, file.orientation
         turn, turned = Turn(orientation, *self.size), upright(in_8_bits(first, False), orientation)
         self.turn, self.factor = turn, factor or -(-max(self.size) // (options.max_size or max(self.size)))
         self.grey = self._reduced(turned)

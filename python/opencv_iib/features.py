@@ -8,7 +8,7 @@ from typing import Any, Optional
 
 import numpy as np
 
-from opencv_iib._arguments import InvalidOption, Path, integer
+from opencv_iib._arguments import InvalidOption, Path, check_choice, check_count, integer
 from opencv_iib._images import reduced, resized_mask
 from opencv_iib._upright import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
@@ -18,7 +18,6 @@ from opencv_iib.keypoints import keypoints_to_array
 
 DETECTORS = ('HESSIAN', 'AKAZE', 'BRISK', 'FAST', 'KAZE', 'ORB', 'SIFT')
 WITHOUT_ANGLES = ('HESSIAN', 'FAST')
-MAX_POINTS = 1 << 30  # what a detector's int holds
 MIN_SIZE = 32  # pixels
 
 
@@ -53,12 +52,9 @@ class FeatureOptions:
 
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
-        if self.detector not in DETECTORS:
-            raise InvalidOption(f'no detector {self.detector}: there are {", ".join(DETECTORS)}')
-        if self.preset not in preset_names():
-            raise InvalidOption(f'no preset {self.preset}: there are {", ".join(preset_names())}')
-        if not 1 <= integer(self.points, 'points', 64) <= MAX_POINTS:
-            raise InvalidOption(f'points is {self.points}: it must be 1 to {MAX_POINTS}')
+        check_choice(self.detector, 'detector', DETECTORS)
+        check_choice(self.preset, 'preset', preset_names())
+        check_count(self.points, 'points')
         check_max_size(self.max_size)
 
 

@@ -222,7 +222,7 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
                 fail(label, f'{label}.csv cannot be written: {e.strerror}')
         progress = Progress('matching', len(listed), len(listed) - len(missing))
         ordered = [pair for tile in tiles(missing, IMAGES_HELD // 4) for pair in tile]  # so that images are held as long as they are needed
-        for pair, result in in_parallel(lambda pair: measure(views.of(names[pair[0]]), views.of(names[pair[1]]), features), ordered, crew):
+        for pair, result in in_parallel(lambda pair: measure(views.of(names[pair[0]]), views.of(names[pair[1]]), features), ordered, crew, (Exception,)):
             if isinstance(result, ImportError):
                 raise result
             if isinstance(result, Exception):

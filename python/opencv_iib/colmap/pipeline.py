@@ -12,7 +12,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import _pairs as pair_lists
-from opencv_iib._arguments import InvalidOption, Path, integer, number, sequence
+from opencv_iib._arguments import InvalidOption, Path, check_choice, check_count, number, sequence
 from opencv_iib._camera import Camera
 from opencv_iib._exif import exif_focal_length, gps_place
 from opencv_iib._files import check_is_folder, check_outputs, only_writer, output_file
@@ -76,8 +76,7 @@ class Options:
         self.features.check()
         if not 0 <= number(self.focal, 'focal') < float('inf'):
             raise InvalidOption(f'focal is {self.focal}: it must be a number of pixels, or 0')
-        if self.camera_model not in CAMERA_MODELS:
-            raise InvalidOption(f'no camera model {self.camera_model}: there are {", ".join(CAMERA_MODELS)}')
+        check_choice(self.camera_model, 'camera model', CAMERA_MODELS)
         for text in sequence(self.camera_of, 'camera_of', "'FOLDER=MODEL,WIDTH,HEIGHT,PARAMS'"):
             if '=' not in str(text):
                 raise InvalidOption(f'camera_of is {text}: it must be FOLDER=MODEL,WIDTH,HEIGHT,PARAMS')
@@ -92,12 +91,10 @@ class Options:
                 raise InvalidOption(str(e)) from None
         if self.pairs not in PAIRS and not os.path.isfile(self.pairs):
             raise InvalidOption(f'pairs: {self.pairs} is neither a file nor one of {", ".join(PAIRS)}')
-        if self.verify not in VERIFIERS:
-            raise InvalidOption(f'verify is {self.verify}: it must be one of {", ".join(VERIFIERS)}')
+        check_choice(self.verify, 'verify', VERIFIERS)
         if self.verify == 'colmap' and colmap_binary() is None:
             raise InvalidOption('verify is colmap, but there is no program colmap: install it, or take magsac')
-        if integer(self.neighbours, 'neighbours', 64) < 1:
-            raise InvalidOption(f'neighbours is {self.neighbours}: it must be at least 1')
+        check_count(self.neighbours, 'neighbours')
         if not 0 < number(self.ratio, 'ratio') <= 1:
             raise InvalidOption(f'ratio is {self.ratio}: it must be in (0, 1]')
         import_cv2()
@@ -149,7 +146,7 @@ def describe_images(database: Database, folder: str, names: Sequence[str], optio
     failed = 0
     progress = Progress('describing', len(stamps), len(stamps) - len(missing))
     describe = functools.partial(describe_image, os.path.abspath(folder), options)
-    for name, result in in_parallel(describe, missing, crew):
+    for name, result in in_parallel(describe, missing, crew, (Exception,)):
         if isinstance(result, (FileNotFoundError, ImportError)):
             raise result  # not the image is at fault, but where it is worked on
         if isinstance(result, Exception):
@@ -179,8 +176,6 @@ def describe_again(database: Database, folder: str, names: Sequence[str], option
     missing = [name for name, image in without.items() if image in needed]
     progress = Progress('describing again', len(missing))
     for name, result in in_parallel(functools.partial(describe_image, os.path.abspath(folder), options), missing, crew):
-        if isinstance(result, Exception):
-            raise result
         if not database.add_codes(without[name], *result[:2]):
             raise ValueError(f'{name} has other points than when the database was made, by another version of OpenCV perhaps: begin anew with '
                              'force (--force)')
@@ -258,8 +253,6 @@ def match_pairs(database: Database, listed: tuple[Iterable[tuple[int, int]], Opt
 
     match = functools.partial(match_tile, level_sizes, ratio, verify)
     for (tile, _), results in in_parallel(match, jobs(), crew):
-        if isinstance(results, Exception):
-            raise results
         for pair, result in zip(tile, results):
             database.add_pair(*pair, *result)
             progress.step()

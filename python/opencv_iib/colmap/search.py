@@ -110,8 +110,6 @@ def candidates(folder: str, options: FeatureOptions, names: dict[int, str], grou
         jobs = ((names[image], in_all) for image in images)
         for image, (_, views) in zip(images, in_parallel(functools.partial(describe_views, folder, options), jobs, crew)):
             progress.step()
-            if isinstance(views, Exception):
-                raise views
             if not in_all:
                 upright[image] = views[0]
                 continue
@@ -191,8 +189,6 @@ def search_pairs(database: Database, folder: str, options: FeatureOptions, any_p
         new = [pair for pair in chosen if database.was_found(*pair) is None]
         jobs = ((names[a], names[b]) for a, b in new)
         for pair, (_, found) in zip(new, in_parallel(functools.partial(search_pair, folder, options), jobs, crew)):
-            if isinstance(found, Exception):
-                raise found
             if found is None or not add_found(database, pair, found):
                 database.add_not_found(*pair)
             progress.step()

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import _core
-from opencv_iib._arguments import InvalidOption, Path, integer
+from opencv_iib._arguments import InvalidOption, Path, check_count
 from opencv_iib._arrays import as_mask
 from opencv_iib._camera import AnyCamera, Camera
 from opencv_iib._files import OF_FILE_MANAGERS, check_folder, check_is_folder
@@ -19,7 +19,7 @@ from opencv_iib._images import in_order
 from opencv_iib._parallel import thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
-from opencv_iib.features import MAX_POINTS, check_max_size
+from opencv_iib.features import check_max_size
 from opencv_iib.localization.localizer import Location
 from opencv_iib.localization.run import images_of, locate
 
@@ -63,8 +63,7 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     :raises FileNotFoundError: for a folder that is not there.
     :raises opencv_iib.error: for a model that is damaged or not that of the images, and for a folder that holds other files.
     """
-    if not 1 <= integer(points, 'points', 64) <= MAX_POINTS:
-        raise InvalidOption(f'points is {points}: it must be 1 to {MAX_POINTS}')
+    check_count(points, 'points')
     check_max_size(max_size)
     threads, used = _core.getNumThreads(), thread_count(workers)
     target = os.path.realpath(out)

@@ -122,9 +122,7 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
         check_name(name)
         return _locate(find, cameras, folder, given, exif, masks, max_size, name)
 
-    for name, result in in_parallel(job, names, Threads(thread_count(workers))):
-        if isinstance(result, Exception) and not isinstance(result, (ValueError, OSError, error)):
-            raise result
+    for name, result in in_parallel(job, names, Threads(thread_count(workers)), (ValueError, OSError, error)):
         own, location = (None, str(result)) if isinstance(result, Exception) else result
         if given is None and own is not None:
             report_camera(own)
