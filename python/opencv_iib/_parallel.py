@@ -4,7 +4,7 @@ from __future__ import annotations
 import collections
 import concurrent.futures
 import os
-from typing import Any, Callable, Iterable, Iterator, Optional, TypeVar, Union
+from typing import Any, Callable, Iterable, Iterator, Optional, TypeVar
 
 import numpy as np
 
@@ -43,7 +43,7 @@ class Threads:
         return arrays
 
 
-class Cluster:
+class Cluster(Threads):
     """The workers of a ``distributed.Client``."""
 
     tile_side = 8
@@ -51,29 +51,21 @@ class Cluster:
     def __init__(self, client: Any) -> None:
         from distributed.comm.core import CommClosedError
         self._client = client
-        self.lost: tuple[type[Exception], ...] = (CommClosedError, concurrent.futures.CancelledError)
+        self.lost = CommClosedError, concurrent.futures.CancelledError
 
-    def executor(self) -> concurrent.futures.Executor:
-        """What jobs are submitted to."""
-        executor: concurrent.futures.Executor = self._client.get_executor(pure=False)
-        return executor
+    def executor(self) -> Any:
+        return self._client.get_executor(pure=False)
 
     def ahead(self) -> int:
-        """How many jobs may wait or run at once."""
-        threads: dict[str, int] = self._client.nthreads()  # workers come and go
-        return 2 * max(1, sum(threads.values()))
+        return 2 * max(1, int(sum(self._client.nthreads().values())))  # workers come and go
 
     def hold(self, *arrays: np.ndarray) -> Any:
-        """What a job takes for the arrays, as one argument or within one."""
         # A worker keeps and hands on what it was given once. As a task and not as scattered data: if the worker vanishes,
         # the scheduler gives the arrays to another.
         return self._client.submit(tuple, arrays, pure=False)
 
 
-Crew = Union[Threads, Cluster]
-
-
-def in_parallel(function: Callable[[T], R], jobs: Iterable[T], crew: Crew, told: tuple[type[Exception], ...] = ()) -> Iterator[tuple[T, Any]]:
+def in_parallel(function: Callable[[T], R], jobs: Iterable[T], crew: Threads, told: tuple[type[Exception], ...] = ()) -> Iterator[tuple[T, Any]]:
     """Has jobs done, a few ahead: each job and its result, in order, in bounded memory.
 
     :param told: exceptions that are results; others are raised.

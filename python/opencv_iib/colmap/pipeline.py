@@ -18,7 +18,7 @@ from opencv_iib._exif import exif_focal_length, gps_place
 from opencv_iib._files import check_is_folder, check_outputs, only_writer, output_file
 from opencv_iib._image_file import ImageFile, Masks, check_sizes
 from opencv_iib._images import find_images, import_cv2, is_listable, is_utf8
-from opencv_iib._parallel import Cluster, Crew, Threads, in_parallel, thread_count
+from opencv_iib._parallel import Cluster, Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib._two_views import magsac
@@ -128,7 +128,7 @@ def describe_image(folder: str, options: Options, name: str
     return to_colmap(rows), codes, width, height, options.camera_model, params, bool(focal)
 
 
-def describe_images(database: Database, folder: str, names: Sequence[str], options: Options, crew: Crew,
+def describe_images(database: Database, folder: str, names: Sequence[str], options: Options, crew: Threads,
                     log: Callable[[str], None]) -> int:
     """Describes the images that the database does not know or that were changed, and removes those that are gone or broken.
 
@@ -164,7 +164,7 @@ def describe_images(database: Database, folder: str, names: Sequence[str], optio
     return failed
 
 
-def describe_again(database: Database, folder: str, names: Sequence[str], options: Options, level_sizes: tuple[int, ...], crew: Crew) -> None:
+def describe_again(database: Database, folder: str, names: Sequence[str], options: Options, level_sizes: tuple[int, ...], crew: Threads) -> None:
     """Gives the images of a finished database their codes again, if they are of a pair that it does not hold."""
     without = database.without_codes()
     if not without:
@@ -230,7 +230,7 @@ def match_tile(level_sizes: tuple[int, ...], ratio: float, verify: str,
 
 
 def match_pairs(database: Database, listed: tuple[Iterable[tuple[int, int]], Optional[int]], ratio: float,
-                level_sizes: tuple[int, ...], verify: str, crew: Crew) -> None:
+                level_sizes: tuple[int, ...], verify: str, crew: Threads) -> None:
     """Matches, and with magsac verifies, the pairs that the database does not hold.
 
     :param listed: pairs of image ids, each once, and how many there are if that is known.

@@ -14,7 +14,7 @@ import numpy as np
 
 from opencv_iib._image_file import ImageFile, Masks
 from opencv_iib._images import reduced, resized_mask
-from opencv_iib._parallel import Crew, in_parallel
+from opencv_iib._parallel import Threads, in_parallel
 from opencv_iib._progress import Progress
 from opencv_iib._two_views import MIN_INLIERS, magsac
 from opencv_iib.colmap.database import Database
@@ -92,7 +92,7 @@ def groups(images: Iterable[int], pairs: Iterable[Pair]) -> dict[int, int]:
     return {image: top(image) for image in above}
 
 
-def candidates(folder: str, options: FeatureOptions, names: dict[int, str], group: dict[int, int], crew: Crew) -> list[Pair]:
+def candidates(folder: str, options: FeatureOptions, names: dict[int, str], group: dict[int, int], crew: Threads) -> list[Pair]:
     """Pairs of images of different groups, first those for which most codes of one view of an image vote."""
     sizes = IIBDescriptorExtractor.createRecommended().levelSizes()
     progress = Progress('comparing views', 2 * len(names))
@@ -154,7 +154,7 @@ def add_found(database: Database, pair: Pair, found: Found) -> bool:
     return True
 
 
-def search_pairs(database: Database, folder: str, options: FeatureOptions, any_pair: bool, crew: Crew) -> None:
+def search_pairs(database: Database, folder: str, options: FeatureOptions, any_pair: bool, crew: Threads) -> None:
     """Searches pairs of images that no verified pairs connect, and writes what is found.
 
     An interrupted run goes on with the pair where it ended.

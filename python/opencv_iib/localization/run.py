@@ -168,17 +168,13 @@ def _write_picture(path: str, image: str, camera: Camera, location: Location) ->
     write_picture(path, picture)
 
 
-def _place_and_turn(cam_from_world: NDArray[np.float64]) -> list[float]:
+def _numbers(cam_from_world: NDArray[np.float64]) -> list[str]:
     """The camera's centre, and the quaternion x y z w from the camera to the world."""
     turn = cam_from_world[:3, :3].T
     vector = import_cv2().Rodrigues(turn)[0].ravel()
     half = np.linalg.norm(vector) / 2
     place = -turn @ cam_from_world[:3, 3]
-    return [*place.tolist(), *(vector * np.sinc(half / np.pi) / 2).tolist(), float(np.cos(half))]
-
-
-def _numbers(cam_from_world: NDArray[np.float64]) -> list[str]:
-    return [repr(value) for value in _place_and_turn(cam_from_world)]
+    return [repr(value) for value in (*place.tolist(), *(vector * np.sinc(half / np.pi) / 2).tolist(), float(np.cos(half)))]
 
 
 def _localizer(map: Path, points: int, lines: bool) -> Localizer:
@@ -248,9 +244,8 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     names, times, readings = images_of(images, '' if table_alone else out, log), {}, None
     if sequence:
         workers = 1
-    if table_alone:
-        if pictures:
-            raise InvalidOption(f'{out} is no folder, which pictures need')
+    if table_alone and pictures:
+        raise InvalidOption(f'{out} is no folder, which pictures need')
     read = [os.path.join(images, name) for name in names] + Masks(mask).check(names) + ([] if imu is None else [os.fspath(imu)])
     if table_alone:
         check_outputs([out], read)
