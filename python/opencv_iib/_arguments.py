@@ -1,6 +1,7 @@
-"""Plain values in calls, checked here, so that a mistake is told by its name and not by C++ types."""
+"""Plain values in calls, checked here, so that a mistake is told by its name and not by C++ types; modules that may be missing."""
 from __future__ import annotations
 
+import importlib
 import operator
 import os
 from typing import Any, Iterable, Union
@@ -68,3 +69,11 @@ def check_count(value: Any, name: str, most: int = MAX_COUNT) -> None:
     """:raises InvalidOption: for less than 1, or more than this."""
     if not 1 <= integer(value, name, 64) <= most:
         raise InvalidOption(f'{name} is {value}: it must be 1 to {most}')
+
+
+def import_module(name: str, what: str) -> Any:
+    """:raises ImportError: saying what it is needed for, and what to install."""
+    try:
+        return importlib.import_module(name)
+    except ImportError as e:
+        raise ImportError(f'{e}: {what}') from None

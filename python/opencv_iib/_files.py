@@ -13,7 +13,6 @@ from opencv_iib import _core
 from opencv_iib._arguments import MissingFile, Path, TakenFile, UnusableName
 from opencv_iib._streams import check_open_file, is_open_file, write_to_open_file
 
-OF_FILE_MANAGERS = {'.DS_Store', 'Thumbs.db', 'desktop.ini'}  #: files that they write into folders that they show
 RECORD = '.made-by-opencv-iib'  #: in a folder of results: which command has written which files
 PART = re.compile(r'\.\d+-\d+\.tmp$')  #: behind the names of files that are being written
 

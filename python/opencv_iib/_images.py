@@ -10,7 +10,7 @@ from typing import Any, Callable, NoReturn, Optional, Sequence
 
 import numpy as np
 
-from opencv_iib._arguments import InvalidOption, Path
+from opencv_iib._arguments import InvalidOption, Path, import_module
 from opencv_iib._exif import TIFF, exif_orientation, is_cut_off, tiff_channels
 from opencv_iib._files import read_bytes, write_whole
 from opencv_iib._streams import note
@@ -80,12 +80,8 @@ def import_cv2() -> Any:
 
     :raises ImportError: saying what to install.
     """
-    try:
-        import cv2
-    except ImportError as e:
-        raise ImportError(f'{e}: images are read by cv2: pip install opencv-python, or opencv-python-headless without '
-                          'windows, or apt install python3-opencv') from None
-    return cv2
+    return import_module('cv2', 'images are read by cv2: pip install opencv-python, or opencv-python-headless without windows, or apt install '
+                                'python3-opencv')
 
 
 def decode(data: bytes, colour: bool = False) -> np.ndarray:

@@ -13,7 +13,7 @@ from opencv_iib import _core
 from opencv_iib._arguments import InvalidOption, Path, check_count
 from opencv_iib._arrays import as_mask
 from opencv_iib._camera import AnyCamera, Camera
-from opencv_iib._files import OF_FILE_MANAGERS, check_folder, check_is_folder
+from opencv_iib._files import check_folder, check_is_folder
 from opencv_iib._image_file import ImageFile, Masks
 from opencv_iib._images import in_order
 from opencv_iib._parallel import thread_count
@@ -36,7 +36,7 @@ def _count(file: str) -> int:
 
 def _check_new(out: Path, force: bool) -> None:
     check_folder(out)
-    if os.path.isdir(out) and not OF_FILE_MANAGERS.issuperset(os.listdir(out)) and not force:
+    if os.path.exists(os.path.join(out, 'map.iib')) and not force:
         raise FileExistsError(f'{out} is there already: choose another folder, or pass force (--force) to replace a map')
 
 
