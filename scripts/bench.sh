@@ -41,8 +41,6 @@ for round in $(seq "$rounds"); do
     done
 done
 machine=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
-"$python3" "$root/tools/pages/speed.py" "$out/speed.csv" "$machine, $(date -u +%Y-%m-%d)" "$build"/speed/*.xml
+"$python3" -B "$root/tools/pages/speed.py" "$out/speed.csv" "$commit" "$machine" "$build"/speed/*.xml
 "$python3" -B "$root/tools/pages/timings.py" "$out"
-[ "$out" != "$build" ] || exit 0
-remember "$out/speed.csv" "$commit" "$machine"
-"$python3" -B "$root/tools/pages/pages.py"
+[ "$out" = "$build" ] || "$python3" -B "$root/tools/pages/pages.py"

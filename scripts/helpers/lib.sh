@@ -142,11 +142,6 @@ measured_commit() {
     echo "$commit"
 }
 
-# remember FILE COMMIT MACHINE: of which run a file in doc is.
-remember() {
-    "$python3" -B "$root/tools/pages/remember.py" "$@"
-}
-
 # The argument of configure with which the tools have the descriptors of opencv_contrib.
 contrib_argument() {
     need python3-venv >&2

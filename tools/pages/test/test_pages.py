@@ -155,9 +155,10 @@ class Figures(unittest.TestCase):
                 files.append(pathlib.Path(folder, '%d.xml' % n))
                 files[-1].write_text('<testsuites cv_version="4" cv_cpu_features="%s">%s%s</testsuites>' % (
                     features, case % ('A_b', 'b/0', '(HierarchicalMatcher::EXACT, &quot;x y&quot;, 3)', time), case % ('C', 'd', '', time)))
-            with unittest.mock.patch.object(sys, 'argv', ['speed.py', folder + '/out.csv', 'a machine', *map(str, files)]):
+            with unittest.mock.patch.object(sys, 'argv', ['speed.py', folder + '/out.csv', 'a commit', 'a machine', *map(str, files)]), \
+                    unittest.mock.patch.object(speed, 'today', lambda: '2001-01-01'):
                 speed.main()
-            self.assertEqual(pathlib.Path(folder, 'out.csv').read_text(), '# OpenCV 4, a machine\ntest,parameters,points,AVX2,SSE4.2\n'
+            self.assertEqual(pathlib.Path(folder, 'out.csv').read_text(), '# OpenCV 4, a machine, 2001-01-01\ntest,parameters,points,AVX2,SSE4.2\n'
                              'A_b,EXACT/x y/3,,7,11\nC_d,,,7,11\n')
 
     def test_the_worst_light_counts(self):
