@@ -114,12 +114,14 @@ void bindLocalization(nb::module_& m)
             .def("__init__", &newLocation)
             .def_ro("found", &Location::found)
             .def_ro("reason", &Location::reason)
-            .def_prop_ro("cam_from_world",
+            .def_prop_ro(
+                    "cam_from_world",
                     [](const Location& self) {
                         return self.found ? std::make_optional(self.cameraFromWorld) : std::nullopt;
                     },
                     nb::for_getter(nb::sig("def cam_from_world(self) -> typing.Any")))
-            .def_prop_ro("covariance",
+            .def_prop_ro(
+                    "covariance",
                     [](const Location& self) {
                         return self.found ? std::make_optional(cv::Mat(self.covariance)) : std::nullopt;
                     },

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Detects, matches and refines points of two images by the recommended chain, by SIFT and by ORB, and draws what agrees.
+// Matches two images by the recommended chain, by SIFT and by ORB, all upright and refined, and draws the matches of IIB and SIFT.
 
 #include "opencv2/calib3d.hpp"
 #include "opencv2/core/utility.hpp"
@@ -23,6 +23,8 @@ static const char* const KEYS =
         "{depth      | <none>       | A's depth d, 16 bits, if the camera moved: b = H (a, 1 / d), H 3x4}"
         "{out        | iib_demo.png | the picture}";
 static const int MAX_KEYPOINTS = 1000, MAX_ERROR = 3, MIN_CONSISTENT = 10;  // fewer agree by chance
+static const double WIDTH = 1100;                                           // of the picture
+static const char* const SETTINGS = " (1000 keypoints an image, upright, mutual, ratio test)";
 
 //! Mutual nearest neighbours under a ratio: the recommended .9 for bits, Lowe's .8 for SIFT's numbers.
 static std::vector<DMatch> match(const Mat& a, const Mat& b)
@@ -94,7 +96,12 @@ try
         std::vector<KeyPoint> keypoints[2];
         Mat codes[2], a, b;
         for (int i = 0; i < 2; i++)
-            features[k]->detectAndCompute(images[i], noArray(), keypoints[i], codes[i]);
+        {
+            features[k]->detect(images[i], keypoints[i]);
+            for (KeyPoint& keypoint : keypoints[i])  // the camera is upright, and so is the recommended chain
+                keypoint.angle = 0;
+            features[k]->compute(images[i], keypoints[i], codes[i]);
+        }
         if (codes[0].empty() || codes[1].empty())
             CV_Error(Error::StsBadArg, "there is no keypoint of " + names[k] + " in one of the images");
         const std::vector<DMatch> matches = match(codes[0], codes[1]);
@@ -110,11 +117,12 @@ try
                 Scalar(), std::vector<char>(), lines);
         drawMatches(images[0], keypoints[0], images[1], keypoints[1], matches, rows[k], Scalar(150, 220, 60),
                 Scalar(), good, lines | DrawMatchesFlags::DRAW_OVER_OUTIMG);
-        resize(rows[k], rows[k], Size(1280, cvRound(rows[k].rows * 1280. / rows[k].cols)), 0, 0, INTER_AREA);
-        copyMakeBorder(rows[k], rows[k], 44, 0, 0, 0, BORDER_CONSTANT, Scalar(32, 28, 26));
-        putText(rows[k], score, Point(14, 29), FONT_HERSHEY_DUPLEX, .68, Scalar::all(235), 1, LINE_AA);
+        resize(rows[k], rows[k], Size(WIDTH, cvRound(rows[k].rows * WIDTH / rows[k].cols)), 0, 0, INTER_AREA);
+        copyMakeBorder(rows[k], rows[k], 40, 0, 0, 0, BORDER_CONSTANT, Scalar(32, 28, 26));
+        putText(rows[k], score + SETTINGS, Point(14, 27), FONT_HERSHEY_DUPLEX, .6, Scalar::all(235), 1,
+                LINE_AA);
     }
-    vconcat(rows, 3, picture);
+    vconcat(rows, 2, picture);  // of IIB and SIFT, for one screen
     if (!imwrite(out, picture))
         CV_Error(Error::StsBadArg, "cannot write the picture " + out + ": check its folder");
     std::printf("%s: within %d pixels of %s\n%s\npicture: %s\n", word.c_str(), MAX_ERROR,
