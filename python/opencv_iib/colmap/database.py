@@ -16,7 +16,7 @@ import numpy as np
 
 from opencv_iib._files import replaced
 from opencv_iib._images import in_order
-from opencv_iib._partial import open_partial, remove_logs
+from opencv_iib._partial import close_partial, open_partial
 
 SCHEMA_VERSION = 3800
 MAX_IMAGE_ID = 2147483647
@@ -133,12 +133,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         self.changed = False
 
     def __exit__(self, *exc: Any) -> None:
-        """Closes the file, and removes it if there is nothing to go on from."""
-        useless = self._finished or not self.stamps()
-        self._db.close()
-        if useless:
-            remove_logs(self.partial)
-            os.unlink(self.partial)
+        close_partial(self._db, self.partial, self._finished or not self.stamps())
 
     def finish(self) -> None:
         """Makes the file, without the codes. Until it is whole, a later run can still go on."""
