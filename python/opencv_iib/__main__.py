@@ -15,7 +15,6 @@ import time
 from typing import Any, Callable, Collection, Iterable, Iterator, NoReturn, Optional, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from opencv_iib import __version__, error, localization
 from opencv_iib._arguments import InvalidOption, import_module
@@ -47,18 +46,14 @@ class _Parser(argparse.ArgumentParser):
         raise InvalidOption(f'{message} ({self.prog} --help tells more)')
 
 
-def _camera(text: str) -> Camera:
-    try:
-        return Camera.parse(text)
-    except error as e:
-        raise argparse.ArgumentTypeError(str(e)) from None
-
-
-def _pose(text: str) -> NDArray[np.float64]:
-    try:
-        return parse_pose(text)
-    except ValueError as e:
-        raise argparse.ArgumentTypeError(str(e)) from None
+def _typed(parse: Callable[[str], Any]) -> Callable[[str], Any]:
+    """What argparse tells mistakes of."""
+    def parsed(text: str) -> Any:
+        try:
+            return parse(text)
+        except (error, ValueError) as e:
+            raise argparse.ArgumentTypeError(str(e)) from None
+    return parsed
 
 
 def _choice(parser: argparse.ArgumentParser, option: str, names: Iterable[str], case: Callable[[str], str] = str.upper, **more: Any) -> None:
@@ -128,7 +123,7 @@ def _parser() -> _Parser:
     command.add_argument('--out', default='matches.csv', help='file to write, a line a match; also .json and .npz, and - for standard output '
                          '(%(default)s); of a list a folder, or a file in .h5 or .hdf5')
     command.add_argument('--picture', help='picture to write')
-    command.add_argument('--camera', dest='cameras', action='append', default=[], metavar=CAMERA, type=_camera,
+    command.add_argument('--camera', dest='cameras', action='append', default=[], metavar=CAMERA, type=_typed(Camera.parse),
                          help="find the pose too, with COLMAP's name and parameters of the camera; twice for two cameras")
     _features(command, FeatureOptions.points)
 
@@ -189,7 +184,7 @@ def _parser() -> _Parser:
         each.add_argument('--workers', type=int, metavar='N', help='threads (one a core)')
         _seen(each)
     for each in (localizing, updating):
-        each.add_argument('--camera', metavar=CAMERA, type=_camera,
+        each.add_argument('--camera', metavar=CAMERA, type=_typed(Camera.parse),
                           help="COLMAP's name and parameters of the camera of all images, instead of the map's or EXIF's")
     mapping.add_argument('--out', required=True, help='folder to write')
     mapping.add_argument('--points', type=int, default=2000, metavar='N', help='at most so many an image (%(default)s)')
@@ -199,7 +194,7 @@ def _parser() -> _Parser:
     localizing.add_argument('--sequence', action='store_true', help='images follow each other: look for each where the last one was')
     localizing.add_argument('--pictures', action='store_true', help='write each image with the points that agree')
     localizing.add_argument('--imu', metavar='IMU.CSV', help="smooth poses by an IMU, EuRoC's file; images must be named by their times")
-    localizing.add_argument('--imu-from-camera', type=_pose, metavar='TX,TY,TZ,QX,QY,QZ,QW', default=np.eye(4),
+    localizing.add_argument('--imu-from-camera', type=_typed(parse_pose), metavar='TX,TY,TZ,QX,QY,QZ,QW', default=np.eye(4),
                             help="where the camera is in the IMU's axes (0,0,0,0,0,0,1)")
     updating.add_argument('--out', help='folder of the new map, instead of the old one')
     updating.add_argument('--force', action='store_true', help='replace a map that is in --out')
@@ -333,10 +328,8 @@ def _cv2_error() -> type[Exception]:
 
 def _say(text: str, out: str = '') -> None:
     """A line about what was done, beside standard output if that is what was written; nothing with --quiet."""
-    if out in STANDARD_OUTPUT and not is_quiet():
-        note(text)
-    elif not is_quiet():
-        put(text + '\n', sys.stdout)
+    if not is_quiet():
+        note(text) if out in STANDARD_OUTPUT else put(text + '\n', sys.stdout)
 
 
 def _parsed(parser: _Parser, words: Sequence[str]) -> argparse.Namespace:

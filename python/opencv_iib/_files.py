@@ -184,13 +184,14 @@ class Results(AbstractContextManager['Results']):
         by, listed = _recorded(self._record)
         if by not in (None, command):
             raise FileExistsError(f'{out} holds results of {by}: choose another folder')
-        own = {name for name in _files_below(self.folder) if PART.sub('', name) in listed | {RECORD}}
+        whole = listed | {RECORD}
+        own = {name for name in _files_below(self.folder) if PART.sub('', name) in whole}
         try:
             self._lock = _core.OutputFolder(self.folder, list(map(os.fsencode, own)))
         except _core.error as e:
             raise FileExistsError(str(e)) from None
         self.old = own & listed  #: what earlier calls have written
-        self.remove(own - self.old - {RECORD})  # what killed processes were writing
+        self.remove(own - whole)  # what killed processes were writing
         self._list(self.old)
 
     def place(self, name: str) -> str:

@@ -34,8 +34,9 @@ def open_partial(path: str, table: str) -> sqlite3.Connection:
     return db
 
 
-def remove_logs(path: str) -> None:
-    """Of a file that nobody has open."""
-    for log in LOGS:
+def close_partial(db: sqlite3.Connection, path: str, remove: bool) -> None:
+    """:param remove: there is nothing to go on from."""
+    db.close()
+    for end in (*LOGS, '') if remove else ():
         with contextlib.suppress(FileNotFoundError):
-            os.unlink(path + log)
+            os.unlink(path + end)

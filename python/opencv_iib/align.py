@@ -18,7 +18,7 @@ from opencv_iib import __version__
 from opencv_iib._arguments import InvalidOption, MissingFile, Path, check_choice, sequence
 from opencv_iib._files import Results, check_folder, check_images, is_in, is_same, write_whole
 from opencv_iib._image_file import ImageFile, Masks
-from opencv_iib._images import FORMATS, can_be, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
+from opencv_iib._images import FORMATS, can_be, find_images, holds, import_cv2, in_8_bits, in_order, reduced, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
@@ -295,10 +295,7 @@ class _View:
 
     def _reduced(self, image: NDArray[np.uint8]) -> NDArray[np.uint8]:
         height, width = (side // self.factor for side in image.shape)
-        if self.factor == 1 or not height * width:
-            return image
-        whole = image[:height * self.factor, :width * self.factor]
-        return np.asarray(import_cv2().resize(whole, (width, height), interpolation=import_cv2().INTER_AREA))
+        return reduced(image[:height * self.factor, :width * self.factor], max(height, width)) if height * width else image
 
     def holes(self, page: NDArray[Any]) -> Optional[NDArray[np.bool_]]:
         """Where it holds no data: H x W, or H x W x 1 or channels; None if it does everywhere."""

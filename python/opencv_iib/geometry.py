@@ -14,29 +14,39 @@ from opencv_iib.enums import AlignmentModel
 
 class _Pose(NamedTuple):
     found: bool
-    R: Any  #: 3 x 3 float64: from the axes of camera 1 to those of camera 2; None if not found, as t and covariance
-    t: Any  #: 3 x 1 float64, of length 1: direction of the translation, in the axes of camera 2
-    inliers: NDArray[np.uint8]  #: N x 1: 1 for matches that agree with the pose
-    covariance: Any  #: 5 x 5 float64, radians: of the rotation, and of the direction of t
+    R: Any
+    t: Any
+    inliers: NDArray[np.uint8]
+    covariance: Any
 
 
 class RelativePose(_Pose):
-    """What :func:`findRelativePose` returns: whether it found a pose, or `reason`, a sentence that says why not."""
+    """What :func:`findRelativePose` returns, a tuple (found, R, t, inliers, covariance).
 
-    reason: str = ''
+    R is 3 x 3, from the axes of camera 1 to those of camera 2; t 3 x 1, of length 1, the direction of the translation in the axes of camera 2;
+    the covariance 5 x 5, radians, of the rotation and of the direction of t. All three are None if no pose is found. The inliers are N x 1,
+    1 for matches that agree.
+    """
+
+    reason: str = ''  #: why no pose is found, a sentence
 
 
 class _Alignment(NamedTuple):
     found: bool
-    transform: Any  #: 3 x 3 float64: from pixels of the image to pixels of the reference; None if not found, as error
-    error: Any  #: 4 x 1 float64: standard deviations of the places of the image's corners, pixels
-    matches: NDArray[np.float32]  #: M x 4: those that agree, x and y in the reference, x and y in the image
+    transform: Any
+    error: Any
+    matches: NDArray[np.float32]
 
 
 class Alignment(_Alignment):
-    """What :func:`alignImages` returns: whether both images show the same, or `reason`, a sentence that says why not."""
+    """What :func:`alignImages` returns, a tuple (found, transform, error, matches).
 
-    reason: str = ''
+    The transform is 3 x 3, from pixels of the image to pixels of the reference; the error 4 x 1, standard deviations of the places of the
+    image's corners, pixels. Both are None if the images do not show the same. The matches are those that agree, M x 4: x and y in the
+    reference, x and y in the image.
+    """
+
+    reason: str = ''  #: why it is not found, a sentence
 
 
 def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:

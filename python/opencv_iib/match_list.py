@@ -21,7 +21,7 @@ from opencv_iib._image_file import Masks, check_sizes
 from opencv_iib._images import find_images
 from opencv_iib._pairs import check_list, pair_name, tiles
 from opencv_iib._parallel import Threads, in_parallel, thread_count
-from opencv_iib._partial import LOGS, open_partial, remove_logs
+from opencv_iib._partial import LOGS, close_partial, open_partial
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib.features import FeatureOptions, Features
@@ -63,12 +63,7 @@ class _State(contextlib.AbstractContextManager['_State']):
         self._db.execute('DELETE FROM iib_pairs WHERE name=?', (name,))
 
     def __exit__(self, *exc: Any) -> None:
-        """Removes the file if there is nothing to go on from."""
-        useless = self.exported or not self.rows()
-        self._db.close()
-        if useless:
-            remove_logs(self._path)
-            os.unlink(self._path)
+        close_partial(self._db, self._path, self.exported or not self.rows())
 
 
 class _Folder(Results):

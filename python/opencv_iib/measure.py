@@ -105,7 +105,7 @@ class Measured(NamedTuple):
             return text + '\nthese may not show the same: no more matches agree with one geometry than chance may give' * (not self.found)
         if not self.pose.found:
             return f'{text}\nno pose: {self.pose.reason}'.replace('no pose: no pose', 'no pose')
-        turn, towards = rotation_vector(self.pose.R), -self.pose.R.T @ self.pose.t.ravel()
+        turn, towards = import_cv2().Rodrigues(self.pose.R)[0].ravel(), -self.pose.R.T @ self.pose.t.ravel()
         errors = np.degrees(np.sqrt(np.diag(self.pose.covariance)))
         return (f'{text}\npose: {int(self.pose.inliers.sum())} agree; the second camera stands towards {towards.round(3)} of the '
                 f'first (right, down, ahead; +-{np.linalg.norm(errors[3:]):.2g} degrees), and is turned by '
@@ -124,12 +124,6 @@ def _finite(array: NDArray[Any]) -> Any:
     numbers = array.astype(object)
     numbers[~np.isfinite(array)] = None
     return numbers.tolist()
-
-
-def rotation_vector(R: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Axis times angle in radians."""
-    vector: NDArray[np.float64] = import_cv2().Rodrigues(R)[0].ravel()
-    return vector
 
 
 def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, picture: Optional[Path] = None,

@@ -3,6 +3,8 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 
+#include <nanobind/stl/pair.h>
+
 #include "opencv2/iib/localization.hpp"
 
 namespace iib_python {
@@ -17,19 +19,22 @@ using cv::iib::PosedImage;
 
 nb::bytes bytesOf(const std::string& text) { return nb::bytes(text.data(), text.size()); }
 
-Location localize(const Localizer& self, const cv::Mat& image, const Camera& camera,
-        const std::optional<cv::Affine3d>& prior, int orientation, const cv::Mat& mask)
+typedef std::pair<std::optional<cv::Affine3d>, std::optional<cv::Mat>> PoseAndCovariance;
+
+//! What Location of Python is made of.
+auto valuesOf(const Location& location)
 {
-    return self.localize(image, camera, prior ? &*prior : nullptr, orientation, mask);
+    PoseAndCovariance known;
+    if (location.found)
+        known = {location.cameraFromWorld, cv::Mat(location.covariance)};
+    return std::make_tuple(known.first, known.second, location.reason, location.matches, location.inliers,
+            location.pixels, location.points);
 }
 
-void newLocation(Location* self, const std::optional<cv::Affine3d>& pose,
-        const std::optional<cv::Mat>& covariance, const std::string& reason, int matches, int inliers,
-        const std::vector<cv::Point2d>& pixels, const std::vector<cv::Point3d>& points)
+auto localize(const Localizer& self, const cv::Mat& image, const Camera& camera,
+        const std::optional<cv::Affine3d>& prior, int orientation, const cv::Mat& mask)
 {
-    new (self) Location{pose.has_value(), reason, pose.value_or(cv::Affine3d()),
-            covariance ? cv::Matx66d(covariance->ptr<double>()) : cv::Matx66d(), matches, inliers, pixels,
-            points};
+    return valuesOf(self.localize(image, camera, prior ? &*prior : nullptr, orientation, mask));
 }
 
 void buildMap(nb::handle model, const nb::callable& read, nb::handle map, int points, bool lines,
@@ -63,9 +68,17 @@ void writeModel(nb::handle folder, const std::vector<PosedImage>& images)
 
 //! @param readings rows of nanoseconds, rate and force, CV_64F.
 std::tuple<std::vector<std::optional<cv::Affine3d>>, std::string> smoothPoses(
-        const std::vector<int64_t>& times, std::vector<Location> images, const cv::Mat& readings,
-        const cv::Affine3d& imuFromCamera)
+        const std::vector<int64_t>& times, const std::vector<PoseAndCovariance>& known,
+        const cv::Mat& readings, const cv::Affine3d& imuFromCamera)
 {
+    std::vector<Location> images(known.size());
+    for (size_t i = 0; i < known.size(); i++)
+        if (known[i].first)
+        {
+            images[i].found = true;
+            images[i].cameraFromWorld = *known[i].first;
+            images[i].covariance = cv::Matx66d(known[i].second->ptr<double>());
+        }
     std::vector<cv::iib::ImuReading> all;
     for (int i = 0; i < readings.rows; i++)
     {
@@ -109,27 +122,6 @@ void bindLocalization(nb::module_& m)
                                      const cv::Affine3d& pose, const std::vector<cv::Point2d>& pixels) {
                 new (self) PosedImage{name, camera, pose, pixels, std::vector<int>(pixels.size(), -1)};
             });
-    nb::class_<Location>(m, "Location")
-            .def(nb::init<const Location&>())
-            .def("__init__", &newLocation)
-            .def_ro("found", &Location::found)
-            .def_ro("reason", &Location::reason)
-            .def_prop_ro(
-                    "cam_from_world",
-                    [](const Location& self) {
-                        return self.found ? std::make_optional(self.cameraFromWorld) : std::nullopt;
-                    },
-                    nb::for_getter(nb::sig("def cam_from_world(self) -> typing.Any")))
-            .def_prop_ro(
-                    "covariance",
-                    [](const Location& self) {
-                        return self.found ? std::make_optional(cv::Mat(self.covariance)) : std::nullopt;
-                    },
-                    nb::for_getter(nb::sig("def covariance(self) -> typing.Any")))
-            .def_ro("matches", &Location::matches)
-            .def_ro("inliers", &Location::inliers)
-            .def_ro("pixels", &Location::pixels)
-            .def_ro("points", &Location::points);
     nb::class_<Localizer>(m, "Localizer")
             .def("__init__",
                     [](Localizer* self, nb::handle map, int points, bool lines) {
@@ -150,8 +142,9 @@ void bindLocalization(nb::module_& m)
             .def(
                     "add",
                     [](MapUpdate& self, const std::string& name, const cv::Mat& image, const Camera& camera,
-                            int orientation,
-                            const cv::Mat& mask) { return self.add(name, image, camera, orientation, mask); },
+                            int orientation, const cv::Mat& mask) {
+                        return valuesOf(self.add(name, image, camera, orientation, mask));
+                    },
                     WithoutGil())
             .def("commit", &commit, WithoutGil());
     m.def("buildMap", &buildMap);

@@ -16,7 +16,7 @@ import numpy as np
 
 from opencv_iib._files import replaced
 from opencv_iib._images import in_order
-from opencv_iib._partial import open_partial, remove_logs
+from opencv_iib._partial import close_partial, open_partial
 
 SCHEMA_VERSION = 3800
 MAX_IMAGE_ID = 2147483647
@@ -97,14 +97,12 @@ class Database(contextlib.AbstractContextManager['Database']):
         self.path, self.partial, self.force, self._finished = path, path + '.partial', force, False
         self.changed = True  #: whether it may hold other images or pairs than the finished database
         self.finished: set[int] = set()  #: images of that one, which keep their number of keypoints for reconstructions that are there
+        self._db = open_partial(self.partial, 'iib_settings')
         try:
-            self._open(settings)
-        except SettingsChanged:
-            if not force:
-                raise
-            remove_logs(self.partial)
-            os.truncate(self.partial, 0)  # the same file: it may be locked
-            self._open(settings)
+            self._begin(settings)
+        except Exception:
+            self._db.close()
+            raise
         if not force and os.path.exists(path):
             self._db.execute('ATTACH ? AS old', (os.fsencode(path),))
             if not self.stamps():
@@ -112,23 +110,17 @@ class Database(contextlib.AbstractContextManager['Database']):
             self.finished = {image for image, in self._db.execute('SELECT image_id FROM old.images')}
             self._db.execute('DETACH old')
 
-    def _open(self, settings: dict[str, Any]) -> None:
-        self._db = open_partial(self.partial, 'iib_settings')
-        try:
-            self._begin(settings)
-        except Exception:
-            self._db.close()
-            raise
-
     def _begin(self, settings: dict[str, Any]) -> None:
         self._db.executescript(SCHEMA)
         if self._db.execute('PRAGMA user_version').fetchone()[0] == 0:  # not where a newer COLMAP has been at it
             self._db.execute(f'PRAGMA user_version={SCHEMA_VERSION}')
-        row = self._db.execute('SELECT settings FROM iib_settings').fetchone()
-        if row is None:
+        old = [json.loads(row) for row, in self._db.execute('SELECT settings FROM iib_settings')]
+        if old and not self.force:
+            check_settings(self.partial, old[0], settings)
+        elif old != [settings]:
+            for table, in self._db.execute("SELECT name FROM sqlite_master WHERE type='table'").fetchall():
+                self._db.execute(f'DELETE FROM {table}')
             self._db.execute('INSERT INTO iib_settings VALUES (?)', (json.dumps(settings, sort_keys=True),))
-        else:
-            check_settings(self.partial, json.loads(row[0]), settings)
 
     def _grow(self) -> None:
         """Takes what the finished database holds, but not what a newer COLMAP has made of it when it opened it."""
@@ -141,12 +133,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         self.changed = False
 
     def __exit__(self, *exc: Any) -> None:
-        """Closes the file, and removes it if there is nothing to go on from."""
-        useless = self._finished or not self.stamps()
-        self._db.close()
-        if useless:
-            remove_logs(self.partial)
-            os.unlink(self.partial)
+        close_partial(self._db, self.partial, self._finished or not self.stamps())
 
     def finish(self) -> None:
         """Makes the file, without the codes. Until it is whole, a later run can still go on."""

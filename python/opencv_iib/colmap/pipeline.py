@@ -58,18 +58,18 @@ class Options:
         """That of the longest folder that an image is in, or of all images; None if neither is known.
 
         :raises opencv_iib.error: for one that is none."""
-        given = [('', self.camera)] if self.camera is not None else []
-        inside = [(folder, camera) for folder, camera in given + self._cameras_of() if name.startswith(folder)]
-        return Camera.parse(max(inside)[1]) if inside else None
+        inside = [(len(folder), camera) for folder, camera in self._cameras() if name.startswith(folder)]
+        return max(inside, key=lambda each: each[0])[1] if inside else None
 
-    def _cameras_of(self) -> list[tuple[str, str]]:
-        return [(posixpath.normpath(folder).strip('/') + '/', camera) for folder, _, camera in (text.rpartition('=') for text in self.camera_of)]
+    def _cameras(self) -> list[tuple[str, Camera]]:
+        """With the folders that they are of; '' for all images."""
+        texts = [(posixpath.normpath(folder).strip('/') + '/', camera) for folder, _, camera in (text.rpartition('=') for text in self.camera_of)]
+        return [(folder, Camera.parse(camera)) for folder, camera in ([] if self.camera is None else [('', self.camera)]) + texts]
 
     def _settings(self) -> dict[str, Any]:
         """What a database depends on, with one text for each meaning. Masks are known by the files of the images."""
-        cameras = sorted(f'{folder}={Camera.parse(camera)}' for folder, camera in self._cameras_of())
-        return {**vars(self), **vars(self.features), 'features': None, 'mask': None, 'pairs': os.path.basename(self.pairs),
-                'camera': self.camera and str(Camera.parse(self.camera)), 'camera_of': cameras}
+        return {**vars(self), **vars(self.features), 'features': None, 'mask': None, 'pairs': os.path.basename(self.pairs), 'camera': None,
+                'camera_of': sorted(f'{folder}={camera}' for folder, camera in self._cameras())}
 
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
@@ -80,15 +80,13 @@ class Options:
         for text in sequence(self.camera_of, 'camera_of', "'FOLDER=MODEL,WIDTH,HEIGHT,PARAMS'"):
             if '=' not in str(text):
                 raise InvalidOption(f'camera_of is {text}: it must be FOLDER=MODEL,WIDTH,HEIGHT,PARAMS')
-        folders = [folder for folder, _ in self._cameras_of()]
+        try:
+            folders = [folder for folder, _ in self._cameras()]
+        except opencv_iib.error as e:
+            raise InvalidOption(str(e)) from None
         for folder in folders:
             if folders.count(folder) > 1:
                 raise InvalidOption(f'camera_of has two cameras of {folder}: give one')
-        for camera in [*(text.rpartition('=')[2] for text in self.camera_of), *([] if self.camera is None else [self.camera])]:
-            try:
-                Camera.parse(camera)
-            except opencv_iib.error as e:
-                raise InvalidOption(str(e)) from None
         if self.pairs not in PAIRS and not os.path.isfile(self.pairs):
             raise InvalidOption(f'pairs: {self.pairs} is neither a file nor one of {", ".join(PAIRS)}')
         check_choice(self.verify, 'verify', VERIFIERS)
@@ -306,7 +304,7 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     if unlistable:
         raise ValueError(f'{unlistable[0]}: matches_importer reads no names with blanks or a leading #; rename it, or '
                          'verify by magsac (--verify)')
-    for folder, _ in options._cameras_of():
+    for folder, _ in options._cameras():
         if not any(name.startswith(folder) for name in names):
             raise InvalidOption(f'camera_of is {folder}: no image is below {os.path.join(images, folder)}')
     lists, masks = [] if options.pairs in PAIRS else [options.pairs], Masks(options.features.mask)

@@ -13,7 +13,7 @@ from opencv_iib._arrays import as_array, as_image, as_mask
 from opencv_iib._camera import AnyCamera, Camera, as_camera, as_rows_of
 
 
-class Location(_core.Location):
+class Location:
     """What :meth:`Localizer.localize` finds: whether there is a pose (`found`), or why not (`reason`).
 
     ``cam_from_world`` is 4 x 4, ``covariance`` 6 x 6, of the camera's centre (map's unit) and of a small turn about the world's
@@ -26,27 +26,14 @@ class Location(_core.Location):
         """A pose and its covariance that were found otherwise, for :func:`smooth_poses`; or none of them."""
         if (cam_from_world is None) != (covariance is None):
             raise ValueError('a pose and its covariance come together, or none of them')
-        super().__init__(None if cam_from_world is None else as_pose(cam_from_world),
-                         None if covariance is None else as_rows_of(np.reshape(covariance, (6, 6)), 6, 'covariance'), str(reason),
-                         integer(matches, 'matches'), integer(inliers, 'inliers'), as_rows_of(pixels, 2, 'pixels'),
-                         as_rows_of(points, 3, 'points'))
-
-    @staticmethod
-    def _of(core: _core.Location) -> Location:
-        made = Location.__new__(Location)
-        _core.Location.__init__(made, core)
-        return made
-
-    def _values(self) -> tuple[Any, ...]:
-        return self.cam_from_world, self.covariance, self.reason, self.matches, self.inliers, self.pixels, self.points
+        self.found, self.reason = cam_from_world is not None, str(reason)
+        self.cam_from_world: Any = None if cam_from_world is None else as_pose(cam_from_world)
+        self.covariance: Any = None if covariance is None else as_rows_of(np.reshape(covariance, (6, 6)), 6, 'covariance')
+        self.matches, self.inliers = integer(matches, 'matches'), integer(inliers, 'inliers')
+        self.pixels, self.points = as_rows_of(pixels, 2, 'pixels'), as_rows_of(points, 3, 'points')
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Location) and all(map(np.array_equal, self._values(), other._values()))
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __reduce__(self) -> Any:
-        return type(self), self._values()
+        return isinstance(other, Location) and all(map(np.array_equal, vars(self).values(), vars(other).values()))
 
     def __repr__(self) -> str:
         if self.cam_from_world is None:
@@ -98,8 +85,8 @@ class Localizer:
         :raises opencv_iib.error: for an image or mask of another size or type, another orientation (no camera sees a mirrored image), or an
             invalid camera.
         """
-        return Location._of(self._core.localize(as_image(image), as_camera(camera), None if prior is None else as_pose(prior),
-                                                integer(orientation, 'orientation'), as_mask(mask)))
+        return Location(*self._core.localize(as_image(image), as_camera(camera), None if prior is None else as_pose(prior),
+                                             integer(orientation, 'orientation'), as_mask(mask)))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Localizer) and self._arguments == other._arguments

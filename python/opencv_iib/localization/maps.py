@@ -151,7 +151,7 @@ def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Opt
     changed = _core.MapUpdate(os.path.realpath(map), '' if out is None else os.path.realpath(out))
 
     def add(name: str, image: NDArray[np.uint8], camera: Camera, orientation: int, mask: Optional[NDArray[np.uint8]]) -> Location:
-        return Location._of(changed.add(name, image, camera, orientation, as_mask(mask)))
+        return Location(*changed.add(name, image, camera, orientation, as_mask(mask)))
 
     for name, own, location in locate(add, changed.cameras(), images, names, camera, workers, log, exif, mask, max_size):
         if own is None or location.reason:

@@ -82,11 +82,10 @@ def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[
     small, mask, scale = file.small(max_size, masks, name if folder else os.path.basename(name))
     orientation = file.orientation_of_camera
     own = camera or find_camera(file.data, file.grey.shape[1], file.grey.shape[0], known, orientation)
-    if small is file.grey:
-        return own, find(name, small, own, orientation, mask)
-    found = find(name, small, own.resized(*small.shape[::-1]), orientation, mask)
-    pixels = (found.pixels + .5) * scale - .5  # the centre of the first one is 0
-    return own, Location(found.cam_from_world, found.covariance, found.reason, found.matches, found.inliers, pixels, found.points)
+    found = find(name, small, own if small is file.grey else own.resized(*small.shape[::-1]), orientation, mask)
+    if small is not file.grey:
+        found.pixels = (found.pixels + .5) * scale - .5  # the centre of the first one is 0
+    return own, found
 
 
 def _camera_reporter(cameras: Sequence[Camera], log: Callable[[str], None]) -> Callable[[Camera], None]:

@@ -45,6 +45,7 @@ def smooth_poses(times: Sequence[Any], locations: Sequence[Location], readings: 
         raise ValueError(f'readings are M x 7 finite numbers: nanoseconds, rate and force, not {rows.shape}')
     locations = sequence(locations, 'locations', 'what Localizer.localize finds')
     for location in locations:
-        if not isinstance(location, _core.Location):
+        if not isinstance(location, Location):
             raise TypeError(f'locations: what Localizer.localize finds is needed, not {location!r}')
-    return SmoothedPoses(*_core.smoothPoses(integers(times, 'times', 64), locations, rows, as_pose(imu_from_camera)))
+    known = [(location.cam_from_world, location.covariance) for location in locations]
+    return SmoothedPoses(*_core.smoothPoses(integers(times, 'times', 64), known, rows, as_pose(imu_from_camera)))
