@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 
-"""SIFT in the place of opencv_iib.localization, with the geometry of pycolmap."""
+"""A baseline for opencv_iib.localization: SIFT with the geometry of pycolmap."""
 import dataclasses
 import itertools
 from typing import Any
@@ -11,16 +11,16 @@ import pycolmap
 
 import opencv_iib
 
-RATIO = .8  # of SIFT's distances
-COMPARED, MAX_ERROR, LEAST_INLIERS = 5, .006, 15  # images of the map; of the longer side; a pose
-MAX_PIXELS = 4.  # of a match from its epipolar line and of a keypoint from its point
-FAR = .01  # radians between rays that do not tell on which side they meet
+RATIO = .8  # of the ratio test
+COMPARED, MAX_ERROR, LEAST_INLIERS = 5, .006, 15  # images of the map; share of the longer side; of a pose
+MAX_PIXELS = 4.  # of a match from its epipolar line, and of a keypoint from its projected point
+FAR = .01  # radians: more parallel rays may meet on either side within the noise
 MIN_ANGLE = 1.5  # degrees between the rays of a point
 
 
 @dataclasses.dataclass
-class Found:
-    """What is told of an image: camera from world, 4 x 4, or None."""
+class Location:
+    """The pose of an image: camera from world, 4 x 4, or None."""
 
     cam_from_world: Any = None
     inliers: int = 0
@@ -38,10 +38,10 @@ def matched(a, b):
     return np.stack([rows[kept], nearest[kept]], axis=1)
 
 
-def fitting(model, a, points_a, b, points_b):
-    """Which matches of two images fit their poses: their rays lie in one plane with both cameras, and meet before them.
+def consistent(model, a, points_a, b, points_b):
+    """Which matches of two images satisfy the epipolar constraint of their poses, with rays that meet before both cameras.
 
-    :param points_a: M x 2, COLMAP's pixels of image a; points_b: those that they match.
+    :param points_a: M x 2, COLMAP's pixels of image a; points_b: the matched pixels of image b.
     """
     image_a, image_b = model.image(a), model.image(b)
     b_from_a = image_b.cam_from_world() * image_a.cam_from_world().inverse()
@@ -57,7 +57,7 @@ def fitting(model, a, points_a, b, points_b):
     normals = np.cross(turned, rays_b)
     ahead_a, ahead_b = ((np.cross(rays, b_from_a.translation) * normals).sum(1) > 0 for rays in (rays_b, turned))
     far = np.linalg.norm(normals, axis=1) < FAR
-    return np.asarray(in_plane & (far | (ahead_a & ahead_b)))  # False for NaN: what a camera cannot see
+    return np.asarray(in_plane & (far | (ahead_a & ahead_b)))  # False for NaN: pixels that a camera cannot see
 
 
 def graph_of(model, matches):
@@ -78,7 +78,7 @@ def graph_of(model, matches):
 
 
 def triangulate(model, graph):
-    """Points from the matches, then refined; poses and cameras stay."""
+    """Triangulates points from matches and refines them; poses and cameras stay fixed."""
     manager = pycolmap.ObservationManager(model, graph)
     triangulator = pycolmap.IncrementalTriangulator(graph, model, manager)
     options = pycolmap.IncrementalTriangulatorOptions(ignore_two_view_tracks=False, min_angle=MIN_ANGLE, random_seed=1)
@@ -101,10 +101,10 @@ def triangulate(model, graph):
 
 
 class Sift:
-    """In the place of Localizer: all pairs of the map's images are matched, and an image with each of them."""
+    """Has the interface of Localizer. Matches all pairs of the map's images, and a query image with each of them."""
 
     def __init__(self, model, images, points, normalized):
-        """In a map of a COLMAP model, in its folder."""
+        """Makes a map from the folder of a COLMAP model."""
         self._sift = cv2.SIFT_create(points)
         self._detector = opencv_iib.NormalizedDetector(self._sift) if normalized else self._sift
         model = pycolmap.Reconstruction(model)
@@ -114,7 +114,7 @@ class Sift:
         matches = []
         for a, b in itertools.combinations(found, 2):
             pairs = matched(found[a][1], found[b][1])
-            fit = fitting(model, a, found[a][0][pairs[:, 0]], b, found[b][0][pairs[:, 1]])
+            fit = consistent(model, a, found[a][0][pairs[:, 0]], b, found[b][0][pairs[:, 1]])
             matches.append((a, b, pairs[fit]))
         triangulate(model, graph_of(model, matches))
         self._images = []
@@ -136,5 +136,5 @@ class Sift:
         taken = pycolmap.Camera(model=camera.model, width=camera.width, height=camera.height, params=camera.params)
         pose = pycolmap.estimate_and_refine_absolute_pose(seen, points, taken, limit) if len(seen) >= LEAST_INLIERS else None
         if pose is None or pose['num_inliers'] < LEAST_INLIERS:
-            return Found()
-        return Found(np.concatenate([pose['cam_from_world'].matrix(), [[0, 0, 0, 1]]]), pose['num_inliers'])
+            return Location()
+        return Location(np.concatenate([pose['cam_from_world'].matrix(), [[0, 0, 0, 1]]]), pose['num_inliers'])
