@@ -123,7 +123,7 @@ class Files(InFolder):
         self.expect_precious(*mine)
         for name in ('out/a.png', 'out/sub/notes', 'out/.hidden', 'out/.iib-part.txt', 'out/.iib-x/a'):
             self.write(name)
-            with self.assertRaisesRegex(FileExistsError, '.*out holds .*, which is of no earlier run'):
+            with self.assertRaisesRegex(FileExistsError, '.*out holds .*, which no earlier run wrote'):
                 self.results('sub/a')
             self.expect_precious(name)
             (self.folder / name).unlink()

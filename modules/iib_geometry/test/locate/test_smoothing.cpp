@@ -13,7 +13,7 @@ namespace opencv_test {
 namespace {
 using namespace cv::iib;
 
-const cv::Vec3d GRAVITY(0, 9.81 * 0.8, 9.81 * 0.6);  // no axis of the world
+const cv::Vec3d GRAVITY(0, 9.81 * 0.8, 9.81 * 0.6);  // along no axis of the world
 const cv::Vec3d RATE_BIAS(0.003, -0.002, 0.004), FORCE_BIAS(0.03, -0.02, 0.04);
 
 //! A smooth path of the IMU, as a function of seconds.
@@ -53,7 +53,7 @@ struct Drive
             images[i].found = false;
     }
 
-    //! But for every fourth.
+    //! Keeps every fourth pose.
     void forgetMost()
     {
         for (size_t i = 0; i < images.size(); i += 4)
@@ -72,7 +72,7 @@ struct Drive
         return result;
     }
 
-    //! Metres; a kilometre without a pose.
+    //! Metres; 1000 without a pose.
     double errorOf(size_t i, const Location& image,
             const cv::Affine3d& imuFromCamera = cv::Affine3d::Identity()) const
     {
@@ -91,7 +91,7 @@ struct Drive
     }
 };
 
-//! Images, half a second apart, with poses about a centimetre and a tenth of a degree off, or `times` as much.
+//! Images half a second apart, whose poses have errors of about 1 cm and 0.1 degrees, multiplied by `times`.
 Drive driveOf(double seconds, const cv::Affine3d& imuFromCamera = cv::Affine3d::Identity(),
         int64 step = 500000000, double times = 1)
 {
@@ -111,7 +111,7 @@ Drive driveOf(double seconds, const cv::Affine3d& imuFromCamera = cv::Affine3d::
         image.cameraFromWorld =
                 cv::Affine3d(cv::Affine3d(turned).rotation() * truth.rotation(), truth.translation() + moved)
                         .inv();
-        for (int i = 0; i < 6; i++)  // points of the map err together: told as less than it is
+        for (int i = 0; i < 6; i++)  // too small by CORRELATED, as of a map with correlated errors
             image.covariance(i, i) = std::pow((i < 3 ? 0.006 : 0.0015) * times, 2) / 5;
         drive.times.push_back(time);
         drive.images.push_back(image);
@@ -133,8 +133,9 @@ void expectUnchanged(const Drive& drive, const std::vector<Location>& found)
     }
 }
 
-// Each block is told to its lowest order in the time: rows are divided by it, and what is left out is a thousandth.
-TEST(Smoothing, derivatives_are_those_of_finite_differences)
+// Each block is accurate to its lowest order in dt. Rows are divided by that order; higher orders are a thousandth of
+// it.
+TEST(Smoothing, derivatives_match_finite_differences)
 {
     typedef ImuState S;
     S::Errors begin;
@@ -144,14 +145,14 @@ TEST(Smoothing, derivatives_are_those_of_finite_differences)
     const double dt = 1e-3, times[] = {dt, dt * dt, dt, 1, 1, 1};
     const auto movedBy = [&](const S::Errors& errors, S::Matrix& change) {
         S at = plus(state, errors);
-        move(at, cv::Vec3d(1, -.5, .7), cv::Vec3d(3, -4, 8), dt, change);
+        advance(at, cv::Vec3d(1, -.5, .7), cv::Vec3d(3, -4, 8), dt, change);
         return at;
     };
     S::Matrix change, unused;
     const S after = movedBy(S::Errors(), change);
-    cv::Mat_<double> told = cv::Mat_<double>(cv::Mat(change));
+    cv::Mat_<double> analytic = cv::Mat_<double>(cv::Mat(change));
     for (int i = 0; i < S::SIZE; i++)
-        told.row(i) /= times[i / 3];
+        analytic.row(i) /= times[i / 3];
     const auto errorsAt = [&](const Numbers& step) {
         const S::Errors errors = minus(movedBy(S::Errors(step.data()), unused), after);
         Numbers scaled;
@@ -159,20 +160,20 @@ TEST(Smoothing, derivatives_are_those_of_finite_differences)
             scaled.push_back(errors[i] / times[i / 3]);
         return scaled;
     };
-    expectDerivatives(told, errorsAt, .01, .05);  // Affine3d::rvec takes turns below 1e-5 for none
+    expectDerivatives(analytic, errorsAt, .01, .05);  // Affine3d::rvec is zero for rotations below 1e-5
 }
 
-// The covariance of a place and a turn without one between them has in its corner how the turn moves the other place.
-TEST(Smoothing, the_lever_of_a_camera_on_its_imu_is_that_of_finite_differences)
+// For an identity covariance the corner of the result is the derivative of the point by the rotation.
+TEST(Smoothing, the_lever_arm_matches_finite_differences)
 {
     const cv::Affine3d body(cv::Vec3d(.3, -.2, .5), cv::Vec3d(1, 2, 3));
     const cv::Vec3d lever(.4, -.3, .2);
-    const cv::Mat carriedOne(carried(cv::Matx66d::eye(), body.rotation() * lever));
+    const cv::Mat atLever(covarianceAt(cv::Matx66d::eye(), body.rotation() * lever));
     const auto placeAt = [&](const Numbers& turn) {
         const cv::Vec3d at = cv::Affine3d(cv::Vec3d(turn.data())).rotation() * body.rotation() * lever;
         return Numbers{at[0], at[1], at[2]};
     };
-    expectDerivatives(cv::Mat_<double>(carriedOne(cv::Rect(3, 0, 3, 3))), placeAt, 1e-6);
+    expectDerivatives(cv::Mat_<double>(atLever(cv::Rect(3, 0, 3, 3))), placeAt, 1e-6);
 }
 
 TEST(Smoothing, images_without_a_pose_get_one)
@@ -185,7 +186,7 @@ TEST(Smoothing, images_without_a_pose_get_one)
     EXPECT_EQ("", found[1].reason);
 }
 
-TEST(Smoothing, images_and_imu_are_better_than_images)
+TEST(Smoothing, imu_improves_poses)
 {
     const Drive drive = driveOf(14);
     EXPECT_LT(drive.meanError(drive.smoothed(readingsUntil(14))), 0.7 * drive.meanError(drive.images));
@@ -223,7 +224,7 @@ TEST(Smoothing, without_readings_the_images_poses_stay)
         EXPECT_NEAR(drive.errorOf(i, drive.images[i]), drive.errorOf(i, found[i]), 1e-12);
 }
 
-TEST(Smoothing, the_camera_is_elsewhere_on_the_imu)
+TEST(Smoothing, the_camera_is_away_from_the_imu)
 {
     const cv::Affine3d imuFromCamera(cv::Vec3d(1.2, -1.1, 1.3), cv::Vec3d(0.3, -0.2, 0.5));
     Drive drive = driveOf(14, imuFromCamera);
@@ -235,7 +236,7 @@ TEST(Smoothing, the_camera_is_elsewhere_on_the_imu)
     EXPECT_EQ(CONTRADICTS, said);
 }
 
-TEST(Smoothing, a_wrong_pose_counts_little)
+TEST(Smoothing, a_wrong_pose_has_little_weight)
 {
     Drive drive = driveOf(14);
     cv::Affine3d& wrong = drive.images[12].cameraFromWorld;
@@ -293,8 +294,8 @@ TEST(Smoothing, readings_that_contradict_the_images_change_nothing)
     }
 }
 
-// The images are five times as uncertain, as well as they are told: each reading alone seems likely.
-TEST(Smoothing, readings_that_surprise_a_little_but_always_change_nothing)
+// Images and their covariances are so uncertain that each innovation alone is plausible.
+TEST(Smoothing, small_contradictions_in_all_images_change_nothing)
 {
     Drive drive = driveOf(10, cv::Affine3d::Identity(), 250000000, 5);
     for (Location& image : drive.images)
@@ -311,7 +312,7 @@ TEST(Smoothing, readings_that_surprise_a_little_but_always_change_nothing)
     EXPECT_EQ(CONTRADICTS, said) << "late";
 }
 
-TEST(Smoothing, what_is_told_of_images_without_a_pose_holds)
+TEST(Smoothing, covariances_of_images_without_a_pose_hold)
 {
     int inside = 0, all = 0;
     double sum = 0;
@@ -338,11 +339,11 @@ TEST(Smoothing, what_is_told_of_images_without_a_pose_holds)
         EXPECT_EQ("", smoothPoses(drive.times, found, readings)) << "smoothed again";
     }
     EXPECT_GT(inside, .9 * all);
-    EXPECT_GT(sum, .2 * all) << "nor are they told to be less certain than they are";
+    EXPECT_GT(sum, .2 * all) << "covariances are not much too large";
 }
 
-// What a camera on the IMU tells does not depend on where on it the camera is.
-TEST(Smoothing, covariances_are_carried_from_the_camera_to_the_imu_and_back)
+// The result must not depend on where the camera is mounted on the IMU.
+TEST(Smoothing, covariances_are_converted_between_camera_and_imu)
 {
     const cv::Affine3d imuFromCamera(cv::Vec3d(.4, -.2, .3), cv::Vec3d(2, -1, 3));
     const auto lever = [&](const cv::Affine3d& imu) { return imu.rotation() * imuFromCamera.translation(); };
@@ -353,22 +354,22 @@ TEST(Smoothing, covariances_are_carried_from_the_camera_to_the_imu_and_back)
     {
         const cv::Affine3d imu = image.cameraFromWorld.inv();
         image.cameraFromWorld = (imu * imuFromCamera).inv();
-        image.covariance = carried(image.covariance, lever(imu));
+        image.covariance = covarianceAt(image.covariance, lever(imu));
     }
     const std::vector<Location> found = at.smoothed(readingsUntil(14)),
                                 moved = beside.smoothed(readingsUntil(14), imuFromCamera);
     for (size_t i = 0; i < found.size(); i++)
         if (!at.images[i].found)
         {
-            const size_t last = i / 4 * 4;  // whose errors the images have in common
-            const cv::Matx66d expected =
-                    beside.images[last].covariance + carried(found[i].covariance - at.images[last].covariance,
-                                                             lever(found[i].cameraFromWorld.inv()));
+            const size_t last = i / 4 * 4;  // the last image with a pose
+            const cv::Matx66d expected = beside.images[last].covariance +
+                                         covarianceAt(found[i].covariance - at.images[last].covariance,
+                                                 lever(found[i].cameraFromWorld.inv()));
             EXPECT_LT(cv::norm(expected, moved[i].covariance), 1e-6 * cv::norm(expected)) << i;
         }
 }
 
-TEST(Smoothing, covariances_that_are_none_change_nothing)
+TEST(Smoothing, invalid_covariances_change_nothing)
 {
     for (const double value : {0., double(NAN), -1., HUGE_VAL})
     {
@@ -377,14 +378,14 @@ TEST(Smoothing, covariances_that_are_none_change_nothing)
         drive.images[3].covariance = cv::Matx66d::eye() * value;
         std::string said;
         expectUnchanged(drive, drive.smoothed(readingsUntil(4), cv::Affine3d::Identity(), &said));
-        EXPECT_EQ("image 3 has a pose or a covariance that is none (not finite, or zero), so that it cannot "
+        EXPECT_EQ("image 3 has an invalid pose or covariance (not finite, or zero), so that it cannot "
                   "be weighed against the "
                   "readings: all poses stay as they are",
                 said);
     }
 }
 
-TEST(Smoothing, readings_that_go_wrong_count_until_then)
+TEST(Smoothing, readings_that_go_wrong_are_used_until_then)
 {
     std::vector<ImuReading> readings = readingsUntil(20);
     for (ImuReading& reading : readings)
@@ -428,7 +429,7 @@ TEST(Smoothing, many_images_a_second_and_a_wrong_one_at_the_start)
     EXPECT_LT(sum, .6 * before);
 }
 
-TEST(Smoothing, refuses_what_has_no_order)
+TEST(Smoothing, refuses_unordered_times)
 {
     Drive drive = driveOf(2);
     std::vector<ImuReading> readings = readingsUntil(2);
@@ -437,19 +438,21 @@ TEST(Smoothing, refuses_what_has_no_order)
     EXPECT_EQ("a reading of the IMU is not finite", error());
     readings = readingsUntil(2);
     for (const double turn : {double(NAN), 2.})
-        EXPECT_EQ("imuFromCamera is not a turn and a shift, or not finite", messageOf([&] {
+        EXPECT_EQ("imuFromCamera must be a finite rotation and translation", messageOf([&] {
             drive.smoothed(readings, cv::Affine3d(cv::Matx33d::eye() * turn, cv::Vec3d()));
         }));
     readings[3] = readings[2];
-    EXPECT_EQ("reading 3 has the time 10000000: times are nanoseconds, of at most 19 digits, and rise",
+    EXPECT_EQ("reading 3 has the time 10000000: times must be nanoseconds, of at most 19 digits, and rise",
             error());
     drive.times[1] = int64(5e18);
-    EXPECT_EQ("image 1 has the time 5000000000000000000: times are nanoseconds, of at most 19 digits, and "
-              "rise",
+    EXPECT_EQ(
+            "image 1 has the time 5000000000000000000: times must be nanoseconds, of at most 19 digits, and "
+            "rise",
             error());
     drive.times[1] = std::numeric_limits<int64>::min();
-    EXPECT_EQ("image 1 has the time -9223372036854775808: times are nanoseconds, of at most 19 digits, and "
-              "rise",
+    EXPECT_EQ(
+            "image 1 has the time -9223372036854775808: times must be nanoseconds, of at most 19 digits, and "
+            "rise",
             error());
     drive.times.pop_back();
     EXPECT_EQ("there are 4 times of 5 images", error());
