@@ -48,6 +48,7 @@ if(IIB_SANITIZE)
 endif()
 
 add_test(NAME perf-smoke COMMAND opencv_perf_iib --perf_min_samples=1 --perf_force_samples=1)
+add_test(NAME perf-smoke-index COMMAND opencv_perf_iib_index --perf_min_samples=1 --perf_force_samples=1)
 add_test(NAME perf-smoke-geometry COMMAND opencv_perf_iib_geometry --perf_min_samples=1 --perf_force_samples=1)
 if(UNIX)
   add_test(NAME scripts COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/scripts_test.sh")

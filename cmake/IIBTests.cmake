@@ -24,6 +24,7 @@ if(OpenCV_video_FOUND)  # has a peer of the refinement, as iib_contrib has of th
   target_compile_definitions(opencv_perf_iib PRIVATE IIB_PERF_VIDEO)
 endif()
 iib_add_test_program(test iib_index)
+iib_add_test_program(perf iib_index)
 iib_add_test_program(test iib_geometry)
 iib_add_test_program(perf iib_geometry)
 foreach(program opencv_perf_iib opencv_perf_iib_geometry)
@@ -48,7 +49,7 @@ endif()
 # The naive oracles are not under test; sanitized, they would take most of the time. Nobody asks for the speed then.
 set(options $<$<CONFIG:Release>:-O2>)
 if(IIB_SANITIZE)
-  set_target_properties(opencv_perf_iib opencv_perf_iib_geometry PROPERTIES EXCLUDE_FROM_ALL ON)
+  set_target_properties(opencv_perf_iib opencv_perf_iib_index opencv_perf_iib_geometry PROPERTIES EXCLUDE_FROM_ALL ON)
   list(APPEND options -fno-sanitize=all)
 endif()
 set_source_files_properties("${IIB_DIR}/test/support/box_oracle.cpp" "${IIB_DIR}/test/support/descriptor_oracle.cpp"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# What each step from an image to a pose costs on this machine, beside ORB, BFMatcher, optical flow and MAGSAC: opencv_perf_iib and
-# opencv_perf_iib_geometry, several times, with all instruction sets in turn, with AVX2 and with SSE4.2; the least time of each test
+# What each step from an image to a pose costs on this machine, beside ORB, BFMatcher, optical flow and MAGSAC: opencv_perf_iib,
+# opencv_perf_iib_index and opencv_perf_iib_geometry, several times, with all instruction sets in turn, with AVX2 and with SSE4.2; the least time of each test
 # counts. Prints tables and writes build/speed.csv; the programs' own XML stays in build/speed. With --document the result goes to
 # doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew. --contrib adds BEBLID,
 # TEBLID and LATCH of opencv_contrib, whose source pip brings.
@@ -22,7 +22,8 @@ need $build_packages xz-utils $pages_packages
 find_data
 commit=$(measured_commit)
 configure -DIIB_BUILD_TESTS=ON ${contrib:+"$contrib"}
-build_targets opencv_perf_iib opencv_perf_iib_geometry
+programs="opencv_perf_iib opencv_perf_iib_index opencv_perf_iib_geometry"
+build_targets $programs
 # For half a second each, and the least time counts: neither few samples nor a busy machine's outliers are errors.
 options="--perf_strategy=base --perf_time_limit=0.5 --perf_min_samples=1 --perf_max_deviation=0 --perf_max_outliers=100"
 rm -rf "$build/speed"
@@ -30,7 +31,7 @@ mkdir -p "$build/speed"
 for round in $(seq "$rounds"); do
     for without in "" AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL; do
         say "round $round of $rounds${without:+, without $without}"
-        for program in opencv_perf_iib opencv_perf_iib_geometry; do
+        for program in $programs; do
             OPENCV_CPU_DISABLE=$without "$build/$program" $options \
                 --gtest_output="xml:$build/speed/$program.$round.${without%%,*}.xml" >"$build/speed/log" 2>&1 || {
                 cat "$build/speed/log" >&2
@@ -40,8 +41,6 @@ for round in $(seq "$rounds"); do
     done
 done
 machine=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
-"$python3" "$root/tools/pages/speed.py" "$out/speed.csv" "$machine, $(date -u +%Y-%m-%d)" "$build"/speed/*.xml
+"$python3" -B "$root/tools/pages/speed.py" "$out/speed.csv" "$commit" "$machine" "$build"/speed/*.xml
 "$python3" -B "$root/tools/pages/timings.py" "$out"
-[ "$out" != "$build" ] || exit 0
-remember "$out/speed.csv" "$commit" "$machine"
-"$python3" -B "$root/tools/pages/pages.py"
+[ "$out" = "$build" ] || "$python3" -B "$root/tools/pages/pages.py"

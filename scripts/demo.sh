@@ -12,19 +12,24 @@ more_help() {
 . "$(dirname "$0")/helpers/lib.sh"
 
 check_options "$table" "$@"
+images=0
 for argument in "$@"; do
     case "$argument" in
     --*=*) ;;
     -*) fail "$argument takes its value behind an equals sign, --option=value" ;;
+    *)
+        [ -e "$argument" ] || fail "there is no $argument"
+        images=$((images + 1))
+        ;;
     esac
 done
-case $operands in
+case $images in
 0)
     pair="$root/tools/synthetic"
     set -- "$pair/demo_noon.jpg" "$pair/demo_night.jpg" --homography="$pair/H_demo" --depth="$pair/demo_depth.png" "$@"
     ;;
 2) ;;
-*) fail "two images are needed, not $operands (--help)" ;;
+*) fail "two images are needed, not $images (--help)" ;;
 esac
 
 need $build_packages

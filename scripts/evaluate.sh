@@ -18,7 +18,7 @@ while :; do
 done
 [ "$nonfree$contrib" != ON ] || fail "--nonfree needs --contrib"
 check_options "$root/tools/evaluation/main.cpp" "$@"
-[ "$operands" != 0 ] || fail "a folder of DATA is needed (--help tells more)"
+[ $# != 0 ] || fail "a folder of DATA is needed (--help tells more)"
 out="$root/results"
 previous=""
 for argument in "$@"; do
@@ -32,14 +32,10 @@ need $build_packages $pages_packages
 [ -z "$contrib" ] || contrib=$(contrib_argument)
 build_tools ${contrib:+"$contrib" -DIIB_CONTRIB_NONFREE=$nonfree} iib_evaluation
 
-# An earlier run's rows are kept. Of which commits they are stands beside each file in its .run, and goes with the file; of runs
-# without summaries, as when one was interrupted, in $pairs/commits.
+# An earlier run's rows are kept: $pairs/commits has the commits of all.
 commit=$(measured_commit)
-[ ! -d "$pairs" ] || [ -e "$pairs/commits" ] || ls "$pairs"/*.run >/dev/null 2>&1 || echo "not recorded" >"$pairs/commits"
+[ ! -d "$pairs" ] || [ -e "$pairs/commits" ] || echo "not recorded" >"$pairs/commits"
 mkdir -p "$pairs"
-for run in "$pairs"/*.run; do
-    [ -e "${run%.run}.csv" ] || rm -f "$run"
-done
 grep -qxF -e "$commit" "$pairs/commits" 2>/dev/null || echo "$commit" >>"$pairs/commits"
 
 for image in view_noon.jpg view_overcast.jpg day.png night.png view_noon.jpg view_panned.jpg street_noon.jpg street_winter.jpg facade_noon.jpg facade_night.jpg facade_noon.jpg facade_turned.jpg; do
@@ -57,7 +53,6 @@ machine="$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $jobs th
     machine="$machine, opencv_contrib $(sed -n 's/^Version: \([0-9]*[.][0-9]*[.][0-9]*\).*/\1/p' "${contrib#*=}/PKG-INFO")"
 [ ! -e "$pairs/pictures" ] || cp -r "$pairs/pictures" "$out"
 "$python3" -B "$root/tools/pages/summaries.py" "$pairs" "$out" "$(paste -sd';' "$pairs/commits")" "$machine"
-rm "$pairs/commits"
 if [ -n "$document" ]; then
     "$python3" -B "$root/tools/pages/pages.py"
 elif [ -e "$out/fixed_points.csv" ]; then

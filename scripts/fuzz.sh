@@ -5,39 +5,9 @@
 # kept in build-fuzz/failures and belongs into fuzz/corpus, with a test, once the bug is fixed. --plain leaves the
 # sanitizers out and makes inputs smaller, so that many times as many are compared with the oracles; its corpus is the
 # same. --keep adds the smallest inputs to fuzz/corpus that reach code which none of its own does.
-# scripts/fuzz.sh --document fuzzes nothing: it adds what was executed since the last time to doc/results/fuzz.csv.
 . "$(dirname "$0")/helpers/lib.sh"
 
-corpus="$cache/fuzz" counts="$cache/fuzz/executions" table="$root/doc/results/fuzz.csv"
-
-# document: the table with the runs in $counts, TARGET,KIND,EXECUTIONS,DATE each, which are then forgotten.
-document() {
-    mkdir -p "$corpus"
-    touch "$counts" "$counts.new"
-    cat "$counts" >>"$counts.new"  # after those of a run that failed
-    rm "$counts"
-    awk -F, '
-        NF == 5 && NR > 1 { sanitized[$1] = $2; plain[$1] = $3; since[$1] = $5 }
-        NF == 4 && $2 == "plain" { plain[$1] += $3 }
-        NF == 4 && $2 == "sanitized" { sanitized[$1] += $3 }
-        NF == 4 && !($1 in since) { since[$1] = $4 }
-        END { for (target in since) printf "%s %.0f %.0f %s\n", target, sanitized[target], plain[target], since[target] }
-        ' "$table" "$counts.new" >"$counts.sum"  # where this fails nothing is forgotten
-    sort "$counts.sum" | {
-        echo "target,sanitized,plain,kept,since"
-        while read -r target sanitized plain since; do
-            echo "$target,$sanitized,$plain,$(ls "$root/fuzz/corpus/$target" | wc -l),$since"
-        done
-    } >"$table.new"
-    mv "$table.new" "$table"
-    rm "$counts.new" "$counts.sum"
-}
-
-if [ "${1:-}" = --document ]; then
-    [ $# = 1 ] || fail "--document stands alone: it fuzzes nothing"
-    document
-    exit 0
-fi
+corpus="$cache/fuzz"
 plain="" keep="" seconds=60
 while true; do
     case "${1:-}" in
@@ -64,12 +34,12 @@ for target in "$@"; do
 done
 need $build_packages clang xz-utils
 if [ -n "$plain" ]; then
-    build="$root/build-fuzz-plain" longest=40 kind=plain
+    build="$root/build-fuzz-plain" longest=40
     # Where numbers are compared is not recorded: it takes half of the time.
     configure -DCMAKE_CXX_COMPILER=clang++ -DIIB_SANITIZE=fuzzer \
         -DCMAKE_CXX_FLAGS=-fno-sanitize-coverage=trace-cmp
 else
-    build="$root/build-fuzz" longest=512 kind=sanitized
+    build="$root/build-fuzz" longest=512
     # The last sanitizer finds casts of numbers too large for an integer, whose result depends on the machine.
     configure -DCMAKE_CXX_COMPILER=clang++ -DIIB_SANITIZE=fuzzer,address,undefined,float-cast-overflow
 fi
@@ -133,7 +103,6 @@ fuzz() {
         { [ -z "$keep" ] || run "$1" -merge=1 -use_counters=0 "$root/fuzz/corpus/$1" "$corpus/$1"; }; then
         executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$1.log" | head -n 1)
         echo "$1: $executions executions, $(ls "$corpus/$1" | wc -l) inputs kept"
-        echo "$1,$kind,$executions,$(date +%F)" >>"$counts"
         touch "$build/$1.passed"
     else
         tail -n 30 "$build/$1.log" | sed "s/^/$1: /"  # others write meanwhile

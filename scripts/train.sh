@@ -18,7 +18,7 @@ case "${1:-}" in
     ;;
 esac
 check_options "$root/tools/training/train.cpp" "$@"
-[ "$operands" != 0 ] || fail "a FOLDER to train on is needed (--help tells more)"
+[ $# != 0 ] || fail "a FOLDER to train on is needed (--help tells more)"
 need $build_packages
 build_tools iib_train
 exec "$build/tools/training/iib_train" "$@"

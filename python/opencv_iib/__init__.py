@@ -21,7 +21,7 @@ from opencv_iib.descriptor import IIB, IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector, NormalizedDetector
 from opencv_iib.enums import AlignmentModel, Border, Channel, Mapping, Mode, Orientation, Preset
 from opencv_iib.functions import Features, Matches, detect_and_describe, match
-from opencv_iib.geometry import Alignment, FoundPose, ImageAligner, NoAlignment, NoPose, alignImages, findRelativePose, logFalseAlarms
+from opencv_iib.geometry import Alignment, ImageAligner, RelativePose, alignImages, confidenceLimit, findRelativePose, logFalseAlarms
 from opencv_iib.keypoints import array_to_keypoints, keypoints_to_array
 from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
@@ -29,10 +29,10 @@ from opencv_iib.refinement import PropagatedMatches, RefinedMatches, propagateMa
 from opencv_iib.rotation import estimateRotation, matchRotated
 from opencv_iib.views import ViewMatcher, ViewMatches, matchViews
 
-__all__ = ['Alignment', 'AlignmentModel', 'Border', 'Channel', 'DMatch', 'Features', 'FoundPose', 'HessianDetector',
+__all__ = ['Alignment', 'AlignmentModel', 'Border', 'Channel', 'DMatch', 'Features', 'HessianDetector',
            'HierarchicalMatcher', 'IIB', 'IIBDescriptorExtractor', 'ImageAligner', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches',
-           'Mode', 'NoAlignment', 'NoPose', 'NormalizedDetector', 'OPENCV_VERSION', 'Orientation', 'Preset', 'PropagatedMatches',
-           'RefinedMatches', 'ViewMatcher', 'ViewMatches', 'alignImages', 'array_to_keypoints', 'detect_and_describe', 'error', 'estimateRotation',
+           'Mode', 'NormalizedDetector', 'OPENCV_VERSION', 'Orientation', 'Preset', 'PropagatedMatches',
+           'RefinedMatches', 'RelativePose', 'ViewMatcher', 'ViewMatches', 'alignImages', 'array_to_keypoints', 'confidenceLimit', 'detect_and_describe', 'error', 'estimateRotation',
            'findRelativePose', 'getNumThreads', 'keypoints_to_array', 'logFalseAlarms', 'match', 'matchRotated', 'matchViews',
            'propagateMatches', 'refineMatches', 'setNumThreads']
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import __version__, error, localization
-from opencv_iib._arguments import InvalidOption
+from opencv_iib._arguments import InvalidOption, import_module
 from opencv_iib._images import FORMATS
 from opencv_iib._parallel import thread_count
 from opencv_iib._streams import STANDARD_OUTPUT, is_quiet, note, put, quiet
@@ -317,12 +317,9 @@ def _client(scheduler: Optional[str]) -> contextlib.AbstractContextManager[Any]:
     """Of Dask, or None without a scheduler."""
     if scheduler is None:
         return contextlib.nullcontext()
-    try:
-        from distributed import Client
-    except ImportError as e:
-        raise ImportError(f'{e}: --scheduler needs pip install opencv-iib[distributed]') from None
+    distributed = import_module('distributed', '--scheduler needs pip install opencv-iib[distributed]')
     logging.getLogger('distributed.client').setLevel(logging.CRITICAL)  # what matters of it comes as an exception
-    client: contextlib.AbstractContextManager[Any] = Client(scheduler)  # type: ignore[no-untyped-call,unused-ignore]
+    client: contextlib.AbstractContextManager[Any] = distributed.Client(scheduler)
     return client
 
 

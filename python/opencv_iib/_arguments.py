@@ -1,6 +1,7 @@
-"""Plain values in calls, checked here, so that a mistake is told by its name and not by C++ types."""
+"""Plain values in calls, checked here, so that a mistake is told by its name and not by C++ types; modules that may be missing."""
 from __future__ import annotations
 
+import importlib
 import operator
 import os
 from typing import Any, Iterable, Union
@@ -53,3 +54,26 @@ def number(value: Any, name: str) -> float:
     if isinstance(value, (str, bytes)) or not hasattr(value, '__float__'):
         raise TypeError(f'{name}: a number is needed, not {value!r}')
     return float(value)
+
+
+MAX_COUNT = 1 << 30  # what the int of a detector holds
+
+
+def check_choice(value: Any, name: str, known: Iterable[str]) -> None:
+    """:raises InvalidOption: for a value that is none of these."""
+    if value not in known:
+        raise InvalidOption(f'no {name} {value}: there are {", ".join(known)}')
+
+
+def check_count(value: Any, name: str, most: int = MAX_COUNT) -> None:
+    """:raises InvalidOption: for less than 1, or more than this."""
+    if not 1 <= integer(value, name, 64) <= most:
+        raise InvalidOption(f'{name} is {value}: it must be 1 to {most}')
+
+
+def import_module(name: str, what: str) -> Any:
+    """:raises ImportError: saying what it is needed for, and what to install."""
+    try:
+        return importlib.import_module(name)
+    except ImportError as e:
+        raise ImportError(f'{e}: {what}') from None

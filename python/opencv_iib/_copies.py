@@ -2,7 +2,10 @@
 from __future__ import annotations
 
 import copy
+from contextlib import suppress
 from typing import Any, TypeVar
+
+from opencv_iib import _core
 
 T = TypeVar('T')
 
@@ -14,9 +17,41 @@ def around(cls: type[T], core: Any) -> T:
     return made
 
 
-def state_of(self: Any) -> dict[str, Any]:
-    """What a pickle holds of an object: its attributes, and its parameters by the name of old, which pickles keep."""
-    return {**vars(self), '_core': self._parameters()}
+class MissingDetector:
+    """Stands for a detector that could not be pickled with the object that used it."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def getDefaultName(self) -> str:
+        """The name of the one that is missing."""
+        return self.name
+
+    def detect(self, image: Any, mask: Any = None) -> Any:
+        """Raises: there is none."""
+        raise RuntimeError(f'the detector {self.name} was not pickled with the object that used it: set it again')
+
+
+class _Kept:
+    """A detector in the state of an object: one of cv2 cannot be copied, nor pickled, and describing needs none."""
+
+    def __init__(self, detector: Any) -> None:
+        self.detector = detector
+
+    def __deepcopy__(self, memo: Any) -> _Kept:
+        with suppress(TypeError):
+            return _Kept(copy.deepcopy(self.detector, memo))
+        return self
+
+    def __reduce__(self) -> Any:
+        known = self.detector is None or isinstance(self.detector, _core.Detector)
+        return _Kept, (self.detector if known else MissingDetector(detector_name(self.detector)),)
+
+
+def detector_name(detector: Any) -> str:
+    """Its getDefaultName(), or its class's name."""
+    name = getattr(detector, 'getDefaultName', None)
+    return str(name()) if callable(name) else type(detector).__name__
 
 
 def copied(cls: type[T]) -> type[T]:
@@ -24,32 +59,15 @@ def copied(cls: type[T]) -> type[T]:
 
     Of `_parameters()`, `_restored()` makes an equal object of the extension.
     """
+    def __getstate__(self: Any) -> dict[str, Any]:
+        attributes = {name: _Kept(value) if name == '_detector' else value for name, value in vars(self).items()}
+        return {**attributes, '_core': self._parameters()}
 
     def __setstate__(self: Any, state: dict[str, Any]) -> None:
-        vars(self).update({name: value for name, value in state.items() if name != '_core'})
+        vars(self).update({name: value.detector if isinstance(value, _Kept) else value for name, value in state.items() if name != '_core'})
         core = self._restored(state['_core'])
         type(core).__setstate__(self, core)
 
-    def twin(self: Any, attributes: dict[str, Any]) -> Any:
-        kind: Any = type(self)
-        made = kind.__new__(kind)
-        made.__setstate__({**attributes, '_core': self._parameters()})
-        return made
-
-    def __copy__(self: Any) -> Any:
-        return twin(self, vars(self))
-
-    def __deepcopy__(self: Any, memo: Any) -> Any:
-        return twin(self, {name: _deep_copy(value, memo) for name, value in vars(self).items()})
-
-    for name, method in (('__getstate__', state_of), *((method.__name__, method) for method in (__setstate__, __copy__, __deepcopy__))):
-        if name not in vars(cls):
-            setattr(cls, name, method)
+    setattr(cls, '__getstate__', __getstate__)
+    setattr(cls, '__setstate__', __setstate__)
     return cls
-
-
-def _deep_copy(value: Any, memo: Any) -> Any:
-    try:
-        return copy.deepcopy(value, memo)
-    except TypeError:  # such as a detector of cv2
-        return value

@@ -126,19 +126,6 @@ def exif_orientation(data: bytes) -> int:
     return told if 1 <= told <= 8 else 1
 
 
-def orientation_of_photograph(data: bytes, exif: bool = True) -> int:
-    """The same of an image whose pixels a camera's geometry is computed of; without `exif` 1.
-
-    :raises ValueError: also without `exif`, for an image that is stored mirrored: no camera sees its pixels.
-    """
-    orientation = exif_orientation(data)
-    if orientation in MIRRORED:
-        raise ValueError(f'its EXIF data say that it is stored mirrored (orientation {orientation}), and no camera sees a mirrored image: write it '
-                         'as it is seen (exiftran -ai FILE, or magick FILE -auto-orient FILE), or remove the entry if it is wrong (exiftool '
-                         '-Orientation= FILE)')
-    return orientation if exif else 1
-
-
 def exif_focal_length(data: bytes, width: int, height: int) -> Optional[float]:
     """Focal length in pixels by a file's EXIF data, by COLMAP's rules; None if they tell none."""
     tiff = _exif(data)

@@ -1,21 +1,20 @@
 """Files and folders that are written: where, whole, and by one process at a time."""
 from __future__ import annotations
 
+import glob
 import json
 import os
 import re
-import shutil
-import stat
-from contextlib import contextmanager, suppress
-from typing import Any, Collection, Iterable, Iterator
+import threading
+from contextlib import AbstractContextManager, contextmanager, suppress
+from typing import Any, Iterable, Iterator, Optional
 
 from opencv_iib import _core
 from opencv_iib._arguments import MissingFile, Path, TakenFile, UnusableName
 from opencv_iib._streams import check_open_file, is_open_file, write_to_open_file
 
-OF_FILE_MANAGERS = {'.DS_Store', 'Thumbs.db', 'desktop.ini'}  #: files that they write into folders that they show
-PART = '.iib-part'  #: the folder that results are written to, within that of the results
-RECORD = '.made-by-opencv-iib'  #: a file in both: which command has written which files; all others are the user's
+RECORD = '.made-by-opencv-iib'  #: in a folder of results: which command has written which files
+PART = re.compile(r'\.\d+-\d+\.tmp$')  #: behind the names of files that are being written
 
 
 def output_file(path: str) -> str:
@@ -62,14 +61,11 @@ def check_outputs(outputs: Iterable[Path], inputs: Iterable[Path]) -> None:
             if is_same(path, other):
                 raise TakenFile(f'{path} is {what} too: give what is written a name of its own')
         taken[path] = 'another output'
-        target = ''
         if is_open_file(os.fspath(path)):
             check_open_file(os.fspath(path))
         else:
-            target = output_file(os.fspath(path))
-        if target and (os.path.isfile(target) or not os.path.exists(target)):
             try:
-                _core.WholeFile(target).discard()
+                _core.WholeFile(output_file(os.fspath(path))).discard()
             except _core.error as e:
                 raise OSError(str(e)) from None
 
@@ -114,15 +110,11 @@ def write_whole(path: str, content: bytes) -> None:
 
     :raises OSError: for a full disk too; the old file stays.
     """
-    target = '' if is_open_file(path) else output_file(path)
     try:
-        if not target:
+        if is_open_file(path):
             write_to_open_file(path, content)
-        elif os.path.exists(target) and not os.path.isfile(target):  # a device, which cannot be replaced
-            with open(target, 'wb') as file:
-                file.write(content)
         else:
-            with replaced(target) as (part,), open(part, 'wb') as file:
+            with replaced(output_file(path)) as (part,), open(part, 'wb') as file:
                 file.write(content)
     except OSError as e:
         raise type(e)(f'{path} cannot be written: {e.strerror or e}') from None
@@ -145,14 +137,11 @@ def replaced(*paths: str) -> Iterator[list[str]]:
             part.discard()
 
 
-def remove_parts(paths: Collection[str]) -> None:
-    """What killed processes were writing, to be put in place of these files. No other may be writing them now."""
-    for folder in {os.path.dirname(path) for path in paths}:
-        with suppress(FileNotFoundError):
-            for name in os.listdir(folder):
-                whole = re.fullmatch(r'(.*)\.\d+-\d+\.tmp', name)
-                if whole and os.path.join(folder, whole[1]) in paths:
-                    os.unlink(os.path.join(folder, name))
+def remove_parts(path: str) -> None:
+    """What killed processes were writing, to be put in place of this file. No other may be writing it now."""
+    for other in glob.iglob(glob.escape(path) + '.*.tmp'):
+        if PART.sub('', other) == path:
+            os.unlink(other)
 
 
 @contextmanager
@@ -180,94 +169,72 @@ def only_writer(path: str, is_folder: bool = False) -> Iterator[None]:
         del lock
 
 
-def _files_below(folder: str) -> list[str]:
-    """Their names relative to it, with '/'."""
-    return [os.path.relpath(os.path.join(root, name), folder).replace(os.sep, '/') for root, folders, files in os.walk(folder)
-            for name in files + [name for name in folders if os.path.islink(os.path.join(root, name))]]
+class Results(AbstractContextManager['Results']):
+    """A folder that a command writes its results to, file by file. A record in it lists the command's files; all others are the user's.
 
-
-@contextmanager
-def new_results(out: str, command: str, state: str = '') -> Iterator[str]:
-    """A folder to write files to, which take their place in that of the results when the block ends without an error.
-
-    Until then earlier results stay there. Nothing is removed or replaced but what the record lists, if it was not changed later.
-
-    :param out: made if it is missing; a link is followed, also if nothing is at its end yet.
-    :param command: whose results are replaced.
-    :param state: a file that tells of what the others are: it is not there while they are replaced.
-    :raises FileExistsError: for a folder that holds something else, or that another process is writing.
+    At the end those of earlier calls that were not written again are removed, if no error was raised.
     """
-    target = os.path.realpath(out)
-    part, there, (other, newest, files) = os.path.join(target, PART), _files_below(target), _recorded(target)
-    if other not in (None, command):
-        raise FileExistsError(f'{out} holds results of {other}: choose another folder')
-    old = [name for name in there if name in files]
-    for name in old:
-        if _is_changed(target, name, newest):
-            raise FileExistsError(f'{out} holds {name}, which was changed since it was written: move it away, or choose another folder')
-    killed = [name for name in there if name.startswith(PART + '/')] if os.path.exists(os.path.join(part, RECORD)) else []
-    own = [*old, *killed, *([RECORD] if other else [])]
-    try:
-        lock = _core.OutputFolder(target, list(map(os.fsencode, own)))
-    except _core.error as e:
-        raise FileExistsError(str(e)) from None
-    try:
-        _discard(part)
-        os.mkdir(part)
-        _record(part, part, command, 0, [])  # by which a later call knows what a killed one has left
-        yield part
-        new = [name for name in _files_below(part) if name != RECORD]
-        for name in new:
-            if os.path.lexists(os.path.join(target, name)) and (name not in old or _is_changed(target, name, newest)):
-                raise FileExistsError(f'{os.path.join(target, name)} has come there meanwhile: remove it, or choose another folder')
-        now = max([newest, *(os.lstat(os.path.join(part, name)).st_mtime_ns for name in new)])
-        _record(target, part, command, now, [*old, *new])  # both, until all are there: a process may be killed in between
-        _remove(target, [name for name in old if name == state])
-        for name in sorted(new, key=lambda name: (name == state, name)):
-            os.makedirs(os.path.dirname(os.path.join(target, name)), exist_ok=True)
-            os.replace(os.path.join(part, name), os.path.join(target, name))
-        _remove(target, [name for name in old if name not in new and not _is_changed(target, name, newest)])
-        _record(target, part, command, now, new)
-    finally:
-        _discard(part)
-        del lock
+
+    def __init__(self, out: str, command: str) -> None:
+        """:param out: made if it is missing; a link is followed, also if nothing is at its end yet.
+        :raises FileExistsError: for a folder that holds something else, or that another process is writing."""
+        self.folder, self._command = os.path.realpath(out), command
+        self.written: set[str] = set()  #: names of files, with '/'
+        self._adding, self._record = threading.Lock(), os.path.join(self.folder, RECORD)
+        by, listed = _recorded(self._record)
+        if by not in (None, command):
+            raise FileExistsError(f'{out} holds results of {by}: choose another folder')
+        own = {name for name in _files_below(self.folder) if PART.sub('', name) in listed | {RECORD}}
+        try:
+            self._lock = _core.OutputFolder(self.folder, list(map(os.fsencode, own)))
+        except _core.error as e:
+            raise FileExistsError(str(e)) from None
+        self.old = own & listed  #: what earlier calls have written
+        self.remove(own - self.old - {RECORD})  # what killed processes were writing
+        self._list(self.old)
+
+    def place(self, name: str) -> str:
+        """The path for a file to write, which is put on the record. Threads may ask at once."""
+        with self._adding, open(self._record, 'a', encoding='ascii') as file:
+            self.written.add(name)
+            file.write(json.dumps(name) + '\n')
+        path = os.path.join(self.folder, name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        return path
+
+    def _list(self, names: Iterable[str]) -> None:
+        write_whole(self._record, ''.join(json.dumps(each) + '\n' for each in (self._command, *sorted(names))).encode())
+
+    def remove(self, names: Iterable[str]) -> None:
+        """Files, and folders that become empty by that."""
+        for name in names:
+            with suppress(OSError):  # of a folder, what else is in it stays
+                os.unlink(os.path.join(self.folder, name))
+                while os.path.dirname(name):
+                    name = os.path.dirname(name)
+                    os.rmdir(os.path.join(self.folder, name))
+
+    def __exit__(self, kind: Optional[type[BaseException]], *_: Any) -> None:
+        if kind is None:  # all is written
+            self.remove(self.old - self.written)
+            self._list(self.written)
+        elif not self.old | self.written:
+            self.remove([RECORD])
+        del self._lock
 
 
-def _record(folder: str, part: str, command: str, newest: int, files: list[str]) -> None:
-    """:param newest: time of the newest of the files, nanoseconds: one that is newer was changed by others."""
-    record = os.path.join(part, 'record')
-    write_whole(record, json.dumps({'command': command, 'newest': newest, 'files': files}).encode())
-    os.replace(record, os.path.join(folder, RECORD))
+def _files_below(folder: str) -> list[str]:
+    """Their names relative to it, with '/'; links are none."""
+    found = [os.path.relpath(os.path.join(root, name), folder).replace(os.sep, '/') for root, _, files in os.walk(folder) for name in files]
+    return [name for name in found if not os.path.islink(os.path.join(folder, name))]
 
 
-def _recorded(folder: str) -> tuple[Any, int, list[str]]:
-    """What _record has written there; None, 0 and nothing without a record."""
-    with suppress(OSError, ValueError, KeyError, TypeError), open(os.path.join(folder, RECORD), encoding='ascii') as file:
-        record = json.load(file)
-        return record['command'], int(record['newest']), list(record['files'])
-    return None, 0, []
-
-
-def _is_changed(folder: str, name: str, newest: int) -> bool:
-    with suppress(FileNotFoundError):
-        status = os.lstat(os.path.join(folder, name))
-        return stat.S_ISLNK(status.st_mode) or status.st_mtime_ns > newest
-    return False
-
-
-def _remove(folder: str, names: Iterable[str]) -> None:
-    """Files, and folders that become empty by that."""
-    for name in names:
-        with suppress(OSError):  # of a folder, what else is in it stays
-            os.unlink(os.path.join(folder, name))
-            while os.path.dirname(name):
-                name = os.path.dirname(name)
-                os.rmdir(os.path.join(folder, name))
-
-
-def _discard(part: str) -> None:
-    """What was not published."""
-    shutil.rmtree(part, ignore_errors=True)
+def _recorded(record: str) -> tuple[Any, set[str]]:
+    """Which command has written which files; None and nothing without a record."""
+    with suppress(OSError, ValueError), open(record, encoding='ascii') as file:
+        command, *names = [json.loads(line) for line in file if line.endswith('\n')]  # the last one may be cut off
+        return command, set(names)
+    return None, set()
 
 
 def read_bytes(path: Path) -> bytes:

@@ -5,14 +5,12 @@ import contextlib
 import io
 from typing import Any, Iterator, Optional
 
+from opencv_iib._arguments import import_module
+
 
 def import_h5py() -> Any:
     """:raises ImportError: saying what to install."""
-    try:
-        import h5py  # type: ignore[import-untyped,unused-ignore]
-    except ImportError as e:
-        raise ImportError(f'{e}: HDF5 files need pip install h5py') from None
-    return h5py
+    return import_module('h5py', 'HDF5 files need pip install h5py')
 
 
 @contextlib.contextmanager

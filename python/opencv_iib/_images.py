@@ -1,4 +1,4 @@
-"""Image files: which there are, what is read of them, and masks; and how pictures are written."""
+"""Formats of images: which files there are, what is read of them, and how pictures are written."""
 from __future__ import annotations
 
 import collections
@@ -6,12 +6,12 @@ import contextlib
 import hashlib
 import os
 import re
-from typing import Any, Callable, Iterable, NoReturn, Optional, Sequence
+from typing import Any, Callable, NoReturn, Optional, Sequence
 
 import numpy as np
 
-from opencv_iib._arguments import InvalidOption, MissingFile, Path
-from opencv_iib._exif import TIFF, exif_orientation, is_cut_off, orientation_of_photograph, tiff_channels
+from opencv_iib._arguments import InvalidOption, Path, import_module
+from opencv_iib._exif import TIFF, exif_orientation, is_cut_off, tiff_channels
 from opencv_iib._files import read_bytes, write_whole
 from opencv_iib._streams import note
 from opencv_iib._tiff import Entry, Pages, import_tifffile, read_tiff, tiff_bytes
@@ -80,41 +80,14 @@ def import_cv2() -> Any:
 
     :raises ImportError: saying what to install.
     """
-    try:
-        import cv2
-    except ImportError as e:
-        raise ImportError(f'{e}: images are read by cv2: pip install opencv-python, or opencv-python-headless without '
-                          'windows, or apt install python3-opencv') from None
-    return cv2
+    return import_module('cv2', 'images are read by cv2: pip install opencv-python, or opencv-python-headless without windows, or apt install '
+                                'python3-opencv')
 
 
-def read_grey(path: Path) -> np.ndarray:
-    """H x W uint8, as the file has it: like COLMAP, not turned as EXIF may ask. What is not of 8 bits is scaled by its own range.
+def decode(data: bytes, colour: bool = False) -> np.ndarray:
+    """Of a file's bytes H x W, or H x W x 3, BGR, uint8: like COLMAP, not turned as EXIF may ask, and other depths scaled by their own range.
 
-    :raises ValueError: saying what is wrong with the file.
-    """
-    return decode_grey(read_bytes(path))
-
-
-def read_with_orientation(path: Path, exif: bool = True, of_camera: bool = False) -> tuple[np.ndarray, int]:
-    """H x W x 3 uint8, BGR, otherwise as read_grey; and how the file stores the image, by its EXIF data, or 1 without `exif`.
-
-    :raises ValueError: naming the file; with `of_camera` also for a mirrored image.
-    """
-    try:
-        data = read_bytes(path)
-        return _decode(data, colour=True), orientation_of_photograph(data, exif) if of_camera else exif_orientation(data) if exif else 1
-    except ValueError as e:
-        raise ValueError(f'{os.fspath(path)}: {e}') from None
-
-
-def decode_grey(data: bytes) -> np.ndarray:
-    """As read_grey, of a file's bytes: cv2 itself takes no path that is not UTF-8."""
-    return _decode(data, colour=False)
-
-
-def _decode(data: bytes, colour: bool) -> np.ndarray:
-    """:raises ValueError: if it cannot be read, also if it is a JPEG without its end, which cv2 would fill with grey."""
+    :raises ValueError: if it cannot be read, also if it is a JPEG without its end, which cv2 would fill with grey."""
     cv2, image = import_cv2(), None
     if not data.startswith(TIFF):
         image = _imdecode(data, (cv2.IMREAD_COLOR if colour else cv2.IMREAD_GRAYSCALE) | cv2.IMREAD_IGNORE_ORIENTATION | cv2.IMREAD_ANYDEPTH)
@@ -126,7 +99,7 @@ def _decode(data: bytes, colour: bool) -> np.ndarray:
 def decode_first(data: bytes) -> np.ndarray:
     """The first page, as a file has it: H x W, or with the channels last, BGR and alpha where they are 3 or 4.
 
-    :raises ValueError: as _decode.
+    :raises ValueError: as decode.
     """
     if not data.startswith(TIFF):
         return _unchanged(data)
@@ -139,7 +112,7 @@ def decode_first(data: bytes) -> np.ndarray:
 def decode_all(data: bytes) -> Pages:
     """All pages.
 
-    :raises ValueError: as _decode.
+    :raises ValueError: as decode.
     """
     return read_tiff(data, _unchanged) if data.startswith(TIFF) else Pages([_unchanged(data)])
 
@@ -202,73 +175,6 @@ def _with_channels(image: np.ndarray, colour: bool) -> np.ndarray:
     return cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR) if colour else grey
 
 
-class Masks:
-    """Which pixels of images are described: those that are not 0 in masks by COLMAP's names, ``more/a.jpg.png`` in their folder for the
-    image more/a.jpg. An image without one is described as a whole."""
-
-    def __init__(self, path: Optional[Path]) -> None:
-        """:param path: folder, or a file for all images; None: no masks.
-        :raises MissingFile: if there is nothing."""
-        self.path = None if path is None else os.fspath(path)
-        if self.path is not None and not os.path.exists(self.path):
-            raise MissingFile(f'there is no mask {self.path}')
-
-    def file(self, name: str) -> str:
-        """Of an image's mask, if there is one; else ''."""
-        if self.path is None or not os.path.isdir(self.path):
-            return self.path or ''
-        path = os.path.join(self.path, name + '.png')
-        return path if os.path.exists(path) else ''
-
-    def stamp(self, path: str, name: str) -> str:
-        """Of an image's file and that of its mask, as :func:`stamp`."""
-        return ' '.join(map(stamp, filter(None, (path, self.file(name)))))
-
-    def check(self, names: Iterable[str]) -> list[str]:
-        """:return: the files of the images' masks.
-        :raises InvalidOption: for a folder without a mask of any image."""
-        names = list(names)
-        files = list(filter(None, map(self.file, names)))
-        if self.path is not None and not files:
-            raise InvalidOption(f'{self.path} has no mask of any image: that of {names[0]} would be {names[0]}.png')
-        return files
-
-    def of(self, name: str, image: np.ndarray) -> Optional[np.ndarray]:
-        """:raises ValueError: for a mask of another size than the image."""
-        path = self.file(name)
-        if not path:
-            return None
-        try:
-            mask = decode_first(read_bytes(path))
-        except ValueError as e:
-            raise ValueError(f'its mask {path}: {e}') from None
-        mask = (mask if mask.ndim == 2 else mask[..., :3].any(axis=2)).astype(bool).astype(np.uint8)
-        if mask.shape != image.shape[:2]:
-            raise ValueError(f'its mask {path} has {mask.shape[1]} x {mask.shape[0]} pixels, and the image {image.shape[1]} x {image.shape[0]}')
-        return mask
-
-
-def check_sizes(folder: Path, names: Sequence[str], masks: Masks, camera: Any) -> None:
-    """Of what was given for all images: masks and a camera, if there is one.
-
-    :raises InvalidOption: if images can be read, but none is of these sizes.
-    """
-    why = ''
-    for name in names if camera is not None or masks.path is not None else ():
-        with contextlib.suppress(ValueError, OSError):
-            image = read_grey(os.path.join(folder, name))
-            height, width = image.shape
-            try:
-                if camera is None or (camera.width, camera.height) == (width, height):
-                    masks.of(name, image)
-                    return
-                why = why or f'{name}: its camera has {camera.width} x {camera.height} pixels, and the image {width} x {height}'
-            except ValueError as e:
-                why = why or f'{name}: {e}'
-    if why:
-        raise InvalidOption(f"{why}, and so it is with all others: give the images' own")
-
-
 TIFFS = ('.tif', '.tiff')
 
 
@@ -301,6 +207,25 @@ def write_picture(path: Path, picture: np.ndarray, *pages: np.ndarray, no_data: 
         raise ValueError(f'{suffix[1:].upper()} cannot hold {1 + len(pages)} x {" x ".join(map(str, picture.shape))} of {picture.dtype}: take TIFF')
     else:
         write_whole(path, import_cv2().imencode(suffix, picture)[1].tobytes())
+
+
+def reduced(image: np.ndarray, max_size: int) -> np.ndarray:
+    """Of so many pixels at the longer side, if it has more and `max_size` is not 0."""
+    height, width = image.shape[:2]
+    longer = max(width, height)
+    if not 0 < max_size < longer:
+        return image
+    cv2 = import_cv2()
+    size = [max(1, round(side * max_size / longer)) for side in (width, height)]
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA))
+
+
+def resized_mask(mask: Optional[np.ndarray], image: np.ndarray) -> Optional[np.ndarray]:
+    """Of the size that the image was reduced to; None for none."""
+    if mask is None or mask.shape == image.shape[:2]:
+        return mask
+    cv2 = import_cv2()
+    return np.asarray(cv2.resize(mask, image.shape[1::-1], interpolation=cv2.INTER_NEAREST))
 
 
 def can_be(text: str, dtype: np.dtype) -> bool:

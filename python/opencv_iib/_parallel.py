@@ -4,23 +4,20 @@ from __future__ import annotations
 import collections
 import concurrent.futures
 import os
-from typing import Any, Callable, Iterable, Iterator, Optional, TypeVar, Union
+from typing import Any, Callable, Iterable, Iterator, Optional, TypeVar
 
 import numpy as np
 
-from opencv_iib._arguments import InvalidOption, integer
+from opencv_iib._arguments import check_count
 
 T = TypeVar('T')
 R = TypeVar('R')
-
-
 MAX_THREADS = 1024
 
 
 def thread_count(workers: Optional[int]) -> int:
     """As many, or one a core for None. :raises InvalidOption: for less than 1, or more than a system can have."""
-    if workers is not None and not 1 <= integer(workers, 'workers', 64) <= MAX_THREADS:
-        raise InvalidOption(f'workers is {workers}: it must be 1 to {MAX_THREADS}')
+    check_count(1 if workers is None else workers, 'workers', MAX_THREADS)
     return workers or os.cpu_count() or 1
 
 
@@ -46,7 +43,7 @@ class Threads:
         return arrays
 
 
-class Cluster:
+class Cluster(Threads):
     """The workers of a ``distributed.Client``."""
 
     tile_side = 8
@@ -54,31 +51,24 @@ class Cluster:
     def __init__(self, client: Any) -> None:
         from distributed.comm.core import CommClosedError
         self._client = client
-        self.lost: tuple[type[Exception], ...] = (CommClosedError, concurrent.futures.CancelledError)
+        self.lost = CommClosedError, concurrent.futures.CancelledError
 
-    def executor(self) -> concurrent.futures.Executor:
-        """What jobs are submitted to."""
-        executor: concurrent.futures.Executor = self._client.get_executor(pure=False)
-        return executor
+    def executor(self) -> Any:
+        return self._client.get_executor(pure=False)
 
     def ahead(self) -> int:
-        """How many jobs may wait or run at once."""
-        threads: dict[str, int] = self._client.nthreads()  # workers come and go
-        return 2 * max(1, sum(threads.values()))
+        return 2 * max(1, int(sum(self._client.nthreads().values())))  # workers come and go
 
     def hold(self, *arrays: np.ndarray) -> Any:
-        """What a job takes for the arrays, as one argument or within one."""
         # A worker keeps and hands on what it was given once. As a task and not as scattered data: if the worker vanishes,
         # the scheduler gives the arrays to another.
         return self._client.submit(tuple, arrays, pure=False)
 
 
-Crew = Union[Threads, Cluster]
+def in_parallel(function: Callable[[T], R], jobs: Iterable[T], crew: Threads, told: tuple[type[Exception], ...] = ()) -> Iterator[tuple[T, Any]]:
+    """Has jobs done, a few ahead: each job and its result, in order, in bounded memory.
 
-
-def in_parallel(function: Callable[[T], R], jobs: Iterable[T], crew: Crew) -> Iterator[tuple[T, Any]]:
-    """Has jobs done, a few ahead: (job, result or exception), in order, in bounded memory.
-
+    :param told: exceptions that are results; others are raised.
     :raises ConnectionError: if those who work have gone.
     """
     waiting: collections.deque[tuple[T, concurrent.futures.Future[R]]] = collections.deque()
@@ -86,7 +76,7 @@ def in_parallel(function: Callable[[T], R], jobs: Iterable[T], crew: Crew) -> It
     def first() -> tuple[T, Any]:
         job, future = waiting.popleft()
         failed = future.exception()
-        if failed is not None and not isinstance(failed, Exception):
+        if failed is not None and not isinstance(failed, told):
             raise failed
         return job, future.result() if failed is None else failed
 

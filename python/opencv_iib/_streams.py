@@ -44,18 +44,17 @@ def note(line: str) -> None:
         put('\\n'.join(line.splitlines()) + '\n', sys.stderr)
 
 
-STANDARD_OUTPUT = ('-', '/dev/stdout', '/dev/fd/1', '/proc/self/fd/1')
+STANDARD_OUTPUT = ('-', '/dev/stdout')
 
 
 def is_open_file(path: str) -> bool:
-    """Whether a name stands for what was open before this program began: '-', /dev/stdout, /dev/fd/63 of the shell's >(...)."""
-    return path in STANDARD_OUTPUT or path.startswith(('/dev/fd/', '/proc/self/fd/', '/dev/stderr'))
+    """Whether a name stands for standard output, or for a pipe or device, such as the shell's >(...): they cannot be replaced."""
+    return path in STANDARD_OUTPUT or os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
 
 
 def check_open_file(path: str) -> None:
-    """:raises UnusableName: for one that was closed."""
-    standard = {'/dev/stderr': sys.stderr, **dict.fromkeys(STANDARD_OUTPUT, sys.stdout)}  # without one, its number may have gone to another file
-    if path in standard and standard[path] is None or path not in STANDARD_OUTPUT and not os.path.exists(path):
+    """:raises UnusableName: for standard output that was closed."""
+    if path in STANDARD_OUTPUT and sys.stdout is None:
         raise UnusableName(f'{path} cannot be written: it is not open')
 
 
@@ -63,7 +62,7 @@ def write_to_open_file(path: str, content: bytes) -> None:
     """Goes on behind what >> adds to."""
     check_open_file(path)
     if path not in STANDARD_OUTPUT:
-        with open(path, 'ab') as file:
+        with open(path, 'wb') as file:
             file.write(content)
     else:
         assert sys.stdout is not None

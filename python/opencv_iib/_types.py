@@ -49,20 +49,10 @@ class DMatch:
 
 
 @functools.lru_cache(maxsize=None)
-def _cv2() -> Any:
-    # Not at import: it takes longer than all of this package, and many use arrays alone.
-    try:
+def of_cv2(name: str) -> Any:
+    """A class of cv2, or this module's own where cv2 is missing."""
+    try:  # not at import: it takes longer than all of this package, and many use arrays alone
         import cv2
     except ImportError:
-        return None
-    return cv2
-
-
-def keypoint_type() -> Any:
-    cv2 = _cv2()
-    return cv2.KeyPoint if cv2 else KeyPoint
-
-
-def match_type() -> Any:
-    cv2 = _cv2()
-    return cv2.DMatch if cv2 else DMatch
+        return globals()[name]
+    return getattr(cv2, name)

@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from opencv_iib._arguments import integer
 
-ROTATIONS = 3, 6, 8
 BACK = {**{orientation: orientation for orientation in range(1, 9)}, 6: 8, 8: 6}  #: orientations that turn back what these turn upright
 TRANSPOSED, TO_THE_LEFT, TO_THE_TOP = (5, 6, 7, 8), (2, 3, 6, 7), (3, 4, 7, 8)  # orientations: axes exchanged, then each reversed
 

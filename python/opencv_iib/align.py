@@ -4,21 +4,21 @@ from __future__ import annotations
 import csv
 import glob
 import html
+import io
 import itertools
 import json
 import os
-import shutil
-from typing import Any, Callable, Iterable, NamedTuple, Optional, Sequence, TextIO
+from typing import Any, Callable, Iterable, NamedTuple, Optional, Sequence
 from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import __version__
-from opencv_iib._arguments import InvalidOption, MissingFile, Path, sequence
-from opencv_iib._exif import TIFF, exif_orientation
-from opencv_iib._files import check_folder, check_images, is_in, is_same, new_results, read_bytes
-from opencv_iib._images import FORMATS, Masks, can_be, decode_all, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
+from opencv_iib._arguments import InvalidOption, MissingFile, Path, check_choice, sequence
+from opencv_iib._files import Results, check_folder, check_images, is_in, is_same, write_whole
+from opencv_iib._image_file import ImageFile, Masks
+from opencv_iib._images import FORMATS, can_be, find_images, holds, import_cv2, in_8_bits, in_order, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
@@ -89,9 +89,8 @@ class _Options(NamedTuple):
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
         check_max_size(self.max_size)
-        for name, value, known in (('format', self.format or 'PNG', FORMATS), ('interpolation', self.interpolation, INTERPOLATIONS)):
-            if value not in known:
-                raise InvalidOption(f'no {name} {value}: there are {", ".join(known)}')
+        check_choice(self.format or 'PNG', 'format', FORMATS)
+        check_choice(self.interpolation, 'interpolation', INTERPOLATIONS)
 
 
 def align(reference: Path, images: Sequence[Path], out: Path, model: int = AlignmentModel.HOMOGRAPHY, exif: bool = True,
@@ -132,38 +131,41 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     settings = [*options, os.path.abspath(reference), work.stamp(reference), __version__]
     stamps = {path: work.stamp(path) for path in paths}
     stopped: Optional[BaseException] = None
-    with new_results(out, 'align', STATE) as folder:
-        done, old_part = _known(out, settings, stamps)
+    with Results(out, 'align') as results:
+        work.place = results.place
+        done, old_part = _known(results.folder, settings, stamps)
         known, names = list(done), _file_names(paths, done)
         part, progress = None if crop else work.whole, Progress('aligning', len(paths), len(done))
 
-        def do(job: Callable[[str], Aligned], missing: list[str]) -> None:
-            for path, found in in_parallel(job, missing, crew):
-                if isinstance(found, Exception):
-                    raise found
-                done[path] = found
+        def forget() -> None:
+            """What an earlier call has found, before pictures of another part or with other options take the places of its own."""
+            if part not in (None, old_part):
+                results.remove([STATE])
 
         def align_one(path: str) -> Aligned:
-            found = work.align(path, os.path.join(folder, names[path]), part)
+            found = work.align(path, names[path], part)
             progress.step()
             return found
+        forget()
         try:
-            do(align_one, [path for path in paths if path not in done])
+            done.update(in_parallel(align_one, [path for path in paths if path not in done], crew))
             part = part or _common(work.whole, done.values())
         except (Exception, KeyboardInterrupt) as e:
             if not done or part is None:
                 raise
             stopped = e
         progress.close()
-        if part == old_part:
-            for path in known:
-                _keep(out, folder, done[path].file)
-        do(lambda path: work.write(path, done[path], os.path.join(folder, names[path]), part),
-           [path for path, each in done.items() if each.transform and not os.path.exists(os.path.join(folder, each.file or names[path]))])
+        forget()
+        for name in [done[path].file for path in known if part == old_part]:
+            for file in (name, f'{VIEWS}/{name}.jpg'):
+                if name and os.path.exists(os.path.join(results.folder, file)):
+                    results.place(file)
+        missing = [path for path, each in done.items() if each.transform and each.file not in results.written]
+        done.update(in_parallel(lambda path: work.write(path, done[path], names[path], part), missing, crew))
         ordered = [done[path] for path in paths if path in done]
-        _write_tables(folder, work.write_reference(folder, part), os.path.basename(reference), ordered, part)
-        with _file(os.path.join(folder, STATE)) as state:
-            json.dump({'settings': settings, 'part': part, 'images': [[stamps[each.name], each] for each in ordered if each.size]}, state)
+        _write_tables(results, work.write_reference(part), os.path.basename(reference), ordered, part)
+        state = {'settings': settings, 'part': part, 'images': [[stamps[each.name], each] for each in ordered if each.size]}
+        write_whole(results.place(STATE), json.dumps(state).encode())
     if stopped is not None:
         raise stopped
     return ordered
@@ -209,17 +211,6 @@ def _known(out: str, settings: list[Any], stamps: dict[str, str]) -> tuple[dict[
         return {}, None
 
 
-def _keep(out: str, folder: str, file: str) -> None:
-    """What an earlier call has written."""
-    for name in filter(None, (file, file and f'{VIEWS}/{file}.jpg')):
-        if os.path.exists(os.path.join(out, name)):
-            os.makedirs(os.path.dirname(os.path.join(folder, name)), exist_ok=True)
-            try:
-                os.link(os.path.join(out, name), os.path.join(folder, name))
-            except OSError:  # of a file system without links
-                shutil.copy2(os.path.join(out, name), os.path.join(folder, name))
-
-
 def _common(whole: list[int], images: Iterable[Aligned]) -> list[int]:
     """The largest part of the reference that all aligned images show: x, y, width, height.
 
@@ -244,24 +235,21 @@ def _common(whole: list[int], images: Iterable[Aligned]) -> list[int]:
     return [int(columns[left]), int(max(top[left], top[right])), int(columns[right] - columns[left] + 1), int(heights[left, right])]
 
 
-def _write_tables(folder: str, reference: str, title: str, done: Sequence[Aligned], part: list[int]) -> None:
+def _write_tables(results: Results, reference: str, title: str, done: Sequence[Aligned], part: list[int]) -> None:
     """The table and the page."""
     ordered = sorted(done, key=lambda each: in_order(each.name))
-    with _file(os.path.join(folder, 'transforms.csv')) as table:
-        csv.writer(table).writerows([HEADER, *map(_row, ordered)])
+    table = io.StringIO(newline='')
+    csv.writer(table).writerows([HEADER, *map(_row, ordered)])
 
     def shown(file: str) -> str:
         view = f'{VIEWS}/{file}.jpg'
-        return quote(view if os.path.exists(os.path.join(folder, view)) else file)
+        return quote(view if view in results.written else file)
     width, height = part[2:]
     figures = (FIGURE.format(reference=shown(reference), file=shown(each.file), name=html.escape(each.name), verdict=each, width=width, height=height)
                if each.file else f'<p>{html.escape(each.name)}: {html.escape(each.verdict)}</p>' for each in ordered)
-    with _file(os.path.join(folder, 'index.html')) as page:
-        page.write(PAGE.format(reference=html.escape(title), width=width, figures='\n'.join(figures)))
-
-
-def _file(path: str) -> TextIO:
-    return open(path, 'w', encoding='utf-8', errors='backslashreplace', newline='')
+    page = PAGE.format(reference=html.escape(title), width=width, figures='\n'.join(figures))
+    for name, text in (('transforms.csv', table.getvalue()), ('index.html', page)):
+        write_whole(results.place(name), text.encode(errors='backslashreplace'))
 
 
 def _file_names(paths: Sequence[str], known: dict[str, Aligned]) -> dict[str, str]:
@@ -284,11 +272,10 @@ class _View:
     def __init__(self, path: str, options: _Options, masks: Masks, factor: int = 0) -> None:
         """:param factor: to reduce by; 0: the least whole one for the largest size, which keeps the centres of pixels.
         :raises ValueError: also for an image that cv2 cannot lay onto another, or others onto it."""
-        data = read_bytes(path)
-        self.pages, self.left_out, self.no_data, self.geo = decode_all(data)
+        file = ImageFile(path, options.exif)
+        self.pages, self.left_out, self.no_data, self.geo = file.pages
         if self.no_data and not all(can_be(self.no_data, page.dtype) for page in self.pages):
             self.no_data = ''
-        self.suffix = '.jpg' if data.startswith(b'\xff\xd8') else '.tif' if data.startswith(TIFF) else '.png'
         first = self.pages[0]
         self.size = list(first.shape[1::-1])
         if max(self.size) > LARGEST_SIDE:
@@ -298,7 +285,7 @@ class _View:
             whole = np.asarray(~(holes if first.ndim == 2 else holes.any(axis=2)), np.uint8)
             mask = whole if mask is None else mask * whole
             first = np.where(holes, np.nan, first)
-        orientation = exif_orientation(data) if options.exif else 1
+        self.suffix, orientation = file.suffix, file.orientation
         turn, turned = Turn(orientation, *self.size), upright(in_8_bits(first, False), orientation)
         self.turn, self.factor = turn, factor or -(-max(self.size) // (options.max_size or max(self.size)))
         self.grey = self._reduced(turned)
@@ -327,6 +314,8 @@ class _View:
 class _Work:
     """What is done with each image. Threads share it."""
 
+    place: Callable[[str], str]  #: the path of a file to write, by its name
+
     def __init__(self, reference: str, options: _Options, masks: Masks, log: Callable[[str], None]) -> None:
         self._options, self._masks, self._log = options, masks, log
         try:
@@ -349,7 +338,7 @@ class _Work:
         return view
 
     def align(self, path: str, name: str, part: Optional[list[int]]) -> Aligned:
-        """:param name: path of what is written, without suffix; nothing is without `part`, what of the reference is shown: x, y, width, height."""
+        """:param name: of what is written, without suffix; nothing is without `part`, what of the reference is shown: x, y, width, height."""
         try:
             view = self._view(path, self._reference.factor if self._options.model == AlignmentModel.TRANSLATION else 0)
         except (ValueError, OSError) as e:
@@ -368,10 +357,10 @@ class _Work:
         """The same for one whose transform is known."""
         return self._written(_View(path, self._options, Masks(None)), aligned, name, part)
 
-    def write_reference(self, folder: str, part: list[int]) -> str:
+    def write_reference(self, part: list[int]) -> str:
         """:return: the name of its file."""
         x, y, width, height = part
-        return self._write(self._reference, [page[y:y + height, x:x + width] for page in self._reference.pages], os.path.join(folder, 'reference'), part)
+        return self._write(self._reference, [page[y:y + height, x:x + width] for page in self._reference.pages], 'reference', part)
 
     def _written(self, view: _View, aligned: Aligned, name: str, part: list[int]) -> Aligned:
         onto = np.array([[1, 0, -part[0]], [0, 1, -part[1]], [0, 0, 1]]) @ np.reshape(aligned.transform, (3, 3))
@@ -384,14 +373,13 @@ class _Work:
     def _write(self, view: _View, pages: Sequence[NDArray[Any]], name: str, part: list[int]) -> str:
         whole = len(pages) == 1 and holds(view.suffix, pages[0])
         suffix = FORMATS[self._options.format] if self._options.format else view.suffix if whole else '.tif'
-        write_picture(name + suffix, *pages, no_data=view.no_data, geo=geo_of_part(self._reference.geo, part[0], part[1]))
-        folder, file = os.path.split(name + suffix)
+        file = name + suffix
+        write_picture(self.place(file), *pages, no_data=view.no_data, geo=geo_of_part(self._reference.geo, part[0], part[1]))
         if suffix == '.tif' or pages[0].dtype != np.uint8:  # which browsers do not show, or too dark
-            os.makedirs(os.path.join(folder, VIEWS), exist_ok=True)
             holes = None if pages[0].dtype == np.uint8 else view.holes(pages[0])
             shown = pages[0] if holes is None else np.where(holes, np.nan, pages[0])  # which has no part in the scale
             shown = shown if np.isfinite(shown).any() else np.zeros_like(shown, np.uint8)
-            write_picture(os.path.join(folder, VIEWS, file + '.jpg'), in_8_bits(shown, True))
+            write_picture(self.place(f'{VIEWS}/{file}.jpg'), in_8_bits(shown, True))
         return file
 
     def _warped(self, view: _View, page: NDArray[Any], onto: NDArray[Any], size: Sequence[int]) -> NDArray[Any]:

@@ -1,8 +1,10 @@
 """IIBDescriptorExtractor: the class of cv2.iib, for arrays and for the objects of any cv2."""
 from __future__ import annotations
 
+import gzip
 import os
 import warnings
+import zlib
 from typing import Any, Optional, Sequence, TypeVar, Union, overload
 
 import numpy as np
@@ -11,9 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, number
 from opencv_iib._arrays import ArrayOrArrays, Images, are_images, as_arrays, as_image, as_matrix, with_images
-from opencv_iib._copies import around, copied, state_of
-from opencv_iib._parameter_file import text_of
-from opencv_iib.detectors import HessianDetector, core_detector, for_pickle
+from opencv_iib._copies import around, copied
+from opencv_iib.detectors import HessianDetector, core_detector
 from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset, preset_number
 from opencv_iib.keypoints import Keypoints, as_rows
 
@@ -185,15 +186,18 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
         self._save(fileName)
 
     def read(self, fileName: Path) -> None:
-        """Reads what write() or C++ wrote."""
-        text = text_of(fileName)
+        """Reads what write() or C++ wrote, also packed by gzip."""
+        name = os.fsdecode(fileName)
         try:
-            self._setParameters(text)
+            with open(name, 'rb') as file:  # OpenCV opens no name beyond Windows' code page or with a '?'
+                text = file.read()
+            text = gzip.decompress(text) if text.startswith(b'\x1f\x8b') else text
+        except (OSError, EOFError, zlib.error) as e:
+            raise _core.error(f'{name} cannot be read: {getattr(e, "strerror", None) or e}') from None
+        try:
+            self._setParameters(text.decode('utf-8-sig', 'replace'))
         except _core.error as e:
-            raise _core.error(f'{os.fsdecode(fileName)} holds no parameters that can be read: {e}') from None
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {**state_of(self), '_detector': for_pickle(self._detector)}
+            raise _core.error(f'{name} holds no parameters that can be read: {e}') from None
 
     def _restored(self, parameters: str) -> Any:
         core = _core.IIBDescriptorExtractor(2.0, 4, 15, 0, False, False, 0)

@@ -10,15 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import number
 from opencv_iib._arrays import are_images, as_image, as_matrix, with_images
-from opencv_iib._copies import copied, state_of
+from opencv_iib._copies import MissingDetector, copied, detector_name  # pickles look for the first one here
 from opencv_iib._core import Detector
 from opencv_iib.keypoints import array_to_keypoints, as_rows
-
-
-def detector_name(detector: Any) -> str:
-    """Its getDefaultName(), or its class's name."""
-    name = getattr(detector, 'getDefaultName', None)
-    return str(name()) if callable(name) else type(detector).__name__
 
 
 def _number(detector: Any, method: str) -> int:
@@ -61,26 +55,6 @@ def detected(owner: Detector, image: ArrayLike, mask: Optional[ArrayLike]) -> tu
         masks: Any = [None] * len(given) if mask is None else mask
         return tuple(detected(owner, *each) for each in with_images(given, masks, 'masks'))
     return array_to_keypoints(detect_rows(owner, image, mask))
-
-
-class MissingDetector:
-    """Stands for a detector that could not be pickled with the object that used it."""
-
-    def __init__(self, name: str) -> None:
-        self.name = name
-
-    def getDefaultName(self) -> str:
-        """The name of the one that is missing."""
-        return self.name
-
-    def detect(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> Any:
-        """Raises: there is none."""
-        raise RuntimeError(f'the detector {self.name} was not pickled with the object that used it: set it again')
-
-
-def for_pickle(detector: Any) -> Any:
-    """What a pickle holds: detectors of this package. One of cv2 cannot be pickled, and describing needs none."""
-    return detector if detector is None or isinstance(detector, Detector) else MissingDetector(detector_name(detector))
 
 
 @copied
@@ -157,9 +131,6 @@ class NormalizedDetector(_core.NormalizedDetector):
     def defaultNorm(self) -> int:
         """Of the detector inside."""
         return _number(self._detector, 'defaultNorm')
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {**state_of(self), '_detector': for_pickle(self._detector)}
 
     def _parameters(self) -> float:
         return self.getSigma()

@@ -8,7 +8,8 @@ from typing import Any, Optional
 
 import numpy as np
 
-from opencv_iib._arguments import InvalidOption, Path, integer
+from opencv_iib._arguments import InvalidOption, Path, check_choice, check_count, integer
+from opencv_iib._images import reduced, resized_mask
 from opencv_iib._upright import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector
@@ -17,7 +18,6 @@ from opencv_iib.keypoints import keypoints_to_array
 
 DETECTORS = ('HESSIAN', 'AKAZE', 'BRISK', 'FAST', 'KAZE', 'ORB', 'SIFT')
 WITHOUT_ANGLES = ('HESSIAN', 'FAST')
-MAX_POINTS = 1 << 30  # what a detector's int holds
 MIN_SIZE = 32  # pixels
 
 
@@ -52,12 +52,9 @@ class FeatureOptions:
 
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
-        if self.detector not in DETECTORS:
-            raise InvalidOption(f'no detector {self.detector}: there are {", ".join(DETECTORS)}')
-        if self.preset not in preset_names():
-            raise InvalidOption(f'no preset {self.preset}: there are {", ".join(preset_names())}')
-        if not 1 <= integer(self.points, 'points', 64) <= MAX_POINTS:
-            raise InvalidOption(f'points is {self.points}: it must be 1 to {MAX_POINTS}')
+        check_choice(self.detector, 'detector', DETECTORS)
+        check_choice(self.preset, 'preset', preset_names())
+        check_count(self.points, 'points')
         check_max_size(self.max_size)
 
 
@@ -77,25 +74,6 @@ def check_max_size(max_size: int) -> None:
     """:raises InvalidOption: for fewer pixels than show anything."""
     if integer(max_size, 'max_size', 64) and not MIN_SIZE <= max_size:
         raise InvalidOption(f'max_size is {max_size}: it must be at least {MIN_SIZE} pixels, or 0')
-
-
-def reduced(image: np.ndarray, max_size: int) -> np.ndarray:
-    """Of so many pixels at the longer side, if it has more and `max_size` is not 0."""
-    height, width = image.shape[:2]
-    longer = max(width, height)
-    if not 0 < max_size < longer:
-        return image
-    import cv2
-    size = [max(1, round(side * max_size / longer)) for side in (width, height)]
-    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA))
-
-
-def resized_mask(mask: np.ndarray, image: np.ndarray) -> np.ndarray:
-    """Of the size that the image was reduced to."""
-    if mask.shape == image.shape[:2]:
-        return mask
-    import cv2
-    return np.asarray(cv2.resize(mask, image.shape[1::-1], interpolation=cv2.INTER_NEAREST))
 
 
 class Features:

@@ -1,7 +1,7 @@
 """Where a second camera stands, and where a second image lies."""
 from __future__ import annotations
 
-from typing import Any, Literal, NamedTuple, Optional, Union
+from typing import Any, NamedTuple, Optional
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,58 +14,28 @@ from opencv_iib.enums import AlignmentModel
 
 class _Pose(NamedTuple):
     found: bool
-    R: Optional[NDArray[np.float64]]
-    t: Optional[NDArray[np.float64]]
-    inliers: NDArray[np.uint8]
-    covariance: Optional[NDArray[np.float64]]
-
-
-class FoundPose(_Pose):
-    """What :func:`findRelativePose` finds; `reason` is ''."""
-
-    __slots__ = ()
-    found: Literal[True]
-    R: NDArray[np.float64]  #: 3 x 3: from the axes of camera 1 to those of camera 2
-    t: NDArray[np.float64]  #: 3 x 1, of length 1: direction of the translation, in the axes of camera 2
+    R: Any  #: 3 x 3 float64: from the axes of camera 1 to those of camera 2; None if not found, as t and covariance
+    t: Any  #: 3 x 1 float64, of length 1: direction of the translation, in the axes of camera 2
     inliers: NDArray[np.uint8]  #: N x 1: 1 for matches that agree with the pose
-    covariance: NDArray[np.float64]  #: 5 x 5, radians: of the rotation, and of the direction of t
-    reason = ''
+    covariance: Any  #: 5 x 5 float64, radians: of the rotation, and of the direction of t
 
 
-class NoPose(_Pose):
-    """What :func:`findRelativePose` gives where it finds none: R, t and covariance are None, and `reason` is a sentence."""
+class RelativePose(_Pose):
+    """What :func:`findRelativePose` returns: whether it found a pose, or `reason`, a sentence that says why not."""
 
-    found: Literal[False]
-    R: None
-    t: None
-    covariance: None
     reason: str = ''
 
 
 class _Alignment(NamedTuple):
     found: bool
-    transform: Optional[NDArray[np.float64]]
-    error: Optional[NDArray[np.float64]]
-    matches: NDArray[np.float32]
+    transform: Any  #: 3 x 3 float64: from pixels of the image to pixels of the reference; None if not found, as error
+    error: Any  #: 4 x 1 float64: standard deviations of the places of the image's corners, pixels
+    matches: NDArray[np.float32]  #: M x 4: those that agree, x and y in the reference, x and y in the image
 
 
 class Alignment(_Alignment):
-    """What :func:`alignImages` finds; `reason` is ''."""
+    """What :func:`alignImages` returns: whether both images show the same, or `reason`, a sentence that says why not."""
 
-    __slots__ = ()
-    found: Literal[True]
-    transform: NDArray[np.float64]  #: 3 x 3: from pixels of the image to pixels of the reference
-    error: NDArray[np.float64]  #: 4 x 1: standard deviations of the places of the image's corners, pixels
-    matches: NDArray[np.float32]  #: M x 4: those that agree, x and y in the reference, x and y in the image
-    reason = ''
-
-
-class NoAlignment(_Alignment):
-    """What :func:`alignImages` gives where images do not show the same: transform and error are None, and `reason` is a sentence."""
-
-    found: Literal[False]
-    transform: None
-    error: None
     reason: str = ''
 
 
@@ -75,7 +45,7 @@ def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:
 
 
 def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: ArrayLike, cameraMatrix2: ArrayLike,
-                     scale: float = 0) -> Union[FoundPose, NoPose]:
+                     scale: float = 0) -> RelativePose:
     """Finds where camera 2 stands, seen from camera 1, from matched points of which many may be wrong.
 
     As ``cv2.iib.findRelativePose``. Points must be free of lens distortion:
@@ -86,22 +56,19 @@ def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: Arra
     :param cameraMatrix1: 3 x 3, [fx 0 cx; 0 fy cy; 0 0 1], of camera 1.
     :param cameraMatrix2: of camera 2.
     :param scale: pixels: about the standard deviation of the points; 0: the residuals tell it.
-    :return: a tuple (found, R, t, inliers, covariance): a NoPose where the matches that agree are not more than chance, or where
+    :return: a tuple (found, R, t, inliers, covariance), with its `reason`. Not found: the matches that agree are not more than chance, or
         two poses explain them as well, as of a plane.
-        Once `found` is checked, type checkers know that R, t and covariance are there.
     :raises opencv_iib.error: for arrays of other shapes, points that are not one for one, and a scale below 0.
     """
     pose, reason = _core.findRelativePose(_numbers(points1, 'points1'), _numbers(points2, 'points2'), _numbers(cameraMatrix1, 'cameraMatrix1'),
                                           _numbers(cameraMatrix2, 'cameraMatrix2'), number(scale, 'scale'))
-    if pose[0]:
-        return FoundPose(*pose)
-    none = NoPose(*pose)
-    none.reason = reason
-    return none
+    result = RelativePose(*pose)
+    result.reason = reason
+    return result
 
 
 def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentModel.HOMOGRAPHY, referenceMask: Optional[ArrayLike] = None,
-                mask: Optional[ArrayLike] = None) -> Union[Alignment, NoAlignment]:
+                mask: Optional[ArrayLike] = None) -> Alignment:
     """Aligns an image with a reference that was taken in another light, as ``cv2.iib.alignImages``.
 
     For images of a plane, or of anything by a camera that stays where it is, though it may turn and zoom. With cv2,
@@ -110,8 +77,8 @@ def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentMo
     :param reference: as IIBDescriptorExtractor takes it; so is `image`.
     :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors.
     :param referenceMask: H x W uint8, 0 where no points are to be found in the reference; so is `mask` of the image.
-    :return: a tuple (found, transform, error, matches): a NoAlignment where the matches are not more than chance, where
-        they span a small part of what both show, as a logo does, or where the images differ by more than the model.
+    :return: a tuple (found, transform, error, matches), with its `reason`. Not found: the matches are not more than chance, they span a small
+        part of what both show, as a logo does, or the images differ by more than the model.
     :raises opencv_iib.error: for images of another type, and a model that is none.
     """
     images = as_image(reference), as_image(image)  # mistakes of both, before either is described
@@ -133,17 +100,15 @@ class ImageAligner:
         """As the class itself."""
         return ImageAligner(reference, model, mask)
 
-    def align(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> Union[Alignment, NoAlignment]:
+    def align(self, image: ArrayLike, mask: Optional[ArrayLike] = None) -> Alignment:
         """As alignImages. The GIL is released meanwhile.
 
         :param mask: of the image.
         :raises opencv_iib.error: for an image of another type, and a mask of another size or type."""
         alignment, reason = self._core.align(as_image(image), as_mask(mask))
-        if alignment[0]:
-            return Alignment(*alignment)
-        none = NoAlignment(*alignment)
-        none.reason = reason
-        return none
+        result = Alignment(*alignment)
+        result.reason = reason
+        return result
 
 
 def logFalseAlarms(points1: ArrayLike, points2: ArrayLike, inliers: ArrayLike, epipolar: bool, threshold: float) -> float:
@@ -163,3 +128,14 @@ def logFalseAlarms(points1: ArrayLike, points2: ArrayLike, inliers: ArrayLike, e
     marks = np.ascontiguousarray(given.astype(bool), np.uint8).reshape(-1, 1)
     return float(_core.logFalseAlarms(_numbers(points1, 'points1'), _numbers(points2, 'points2'), marks, bool(epipolar),
                                       number(threshold, 'threshold')))
+
+
+def confidenceLimit(probability: float, dimensions: int) -> float:
+    """How far off an estimate may be, as ``cv2.iib.confidenceLimit``: the limit of error @ inv(covariance) @ error within which errors of poses,
+    alignments and refined points lie with this probability. They are Student's t with two degrees of freedom, not Gaussian.
+
+    :param probability: 0 or more and below 1.
+    :param dimensions: 1 or more: numbers in an error, such as 3 of a rotation, 2 of a direction or of a point.
+    :raises opencv_iib.error: for other values.
+    """
+    return float(_core.confidenceLimit(number(probability, 'probability'), integer(dimensions, 'dimensions')))

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import sequence
 from opencv_iib._arrays import as_array, as_matrix
-from opencv_iib._types import KeyPointLike, keypoint_type
+from opencv_iib._types import KeyPointLike, of_cv2
 
 #: A sequence of objects like cv2.KeyPoint, or an N x 3, N x 4 or N x 7 array.
 Keypoints = Union[Sequence[KeyPointLike], ArrayLike]
@@ -35,7 +35,7 @@ def keypoints_to_array(keypoints: Iterable[KeyPointLike]) -> NDArray[np.float32]
 
 def array_to_keypoints(rows: ArrayLike) -> tuple[Any, ...]:
     """What :func:`keypoints_to_array` gave, as cv2.KeyPoint if cv2 is there, else :class:`opencv_iib.KeyPoint`."""
-    array, make = as_array(rows, 'keypoints').astype(np.float32, copy=False), keypoint_type()
+    array, make = as_array(rows, 'keypoints').astype(np.float32, copy=False), of_cv2('KeyPoint')
     if array.size and array.shape[1:] != (7,):
         raise ValueError(f'keypoints: an array of N x 7 is needed, as keypoints_to_array gives it, not of {" x ".join(map(str, array.shape))}')
     return tuple(make(x, y, size, angle, response, int(octave), int(class_id))

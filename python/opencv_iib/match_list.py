@@ -8,19 +8,20 @@ import io
 import json
 import os
 import threading
-from typing import Any, Callable, Collection, Iterator, Optional, Union
+from typing import Any, Callable, Collection, Iterator, Optional
 
 import numpy as np
 
 from opencv_iib import __version__
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._camera import AnyCamera, Camera, as_camera
-from opencv_iib._files import OF_FILE_MANAGERS, check_folder, check_is_folder, check_outputs, only_writer, output_file, remove_parts, replaced, write_whole
+from opencv_iib._files import Results, check_folder, check_is_folder, check_outputs, only_writer, output_file, remove_parts, replaced, write_whole
 from opencv_iib._hdf5 import import_h5py, new_hdf5
-from opencv_iib._images import Masks, check_sizes, find_images
+from opencv_iib._image_file import Masks, check_sizes
+from opencv_iib._images import find_images
 from opencv_iib._pairs import check_list, pair_name, tiles
 from opencv_iib._parallel import Threads, in_parallel, thread_count
-from opencv_iib._partial import open_partial, remove_logs
+from opencv_iib._partial import LOGS, open_partial, remove_logs
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib.features import FeatureOptions, Features
@@ -70,51 +71,36 @@ class _State(contextlib.AbstractContextManager['_State']):
             os.unlink(self._path)
 
 
-class _Folder:
+class _Folder(Results):
     """A CSV file a pair, ``A/B.csv``, and a table of all."""
 
     def __init__(self, table: str) -> None:
-        self._path, self._table, self.rows = os.path.dirname(table), table, dict[str, Row]()
-        if os.path.lexists(table):
-            head: Row = []
-            with contextlib.suppress(csv.Error, ValueError), open(table, encoding='utf-8', newline='') as file:
-                head, *rows = csv.reader(file)
-            if head != COLUMNS:
-                raise FileExistsError(f'{table} is there, and not of this command: choose another folder')
-            self.rows = {pair_name(*row[:2]): row for row in rows if len(row) == len(COLUMNS)}
-        elif {*os.listdir(self._path)} - OF_FILE_MANAGERS != {TABLE + PARTIAL} and not os.path.getsize(table + PARTIAL):
-            raise FileExistsError(f'{self._path} holds other files: choose another folder')
+        super().__init__(os.path.dirname(table), 'match')
+        for end in ('', PARTIAL, *(PARTIAL + log for log in LOGS)):
+            self.place(TABLE + end)
+        self.written |= self.old  # pairs of earlier lists stay
+        self.rows: dict[str, Row] = {}
+        with contextlib.suppress(FileNotFoundError, csv.Error, ValueError), open(table, encoding='utf-8', newline='') as file:
+            head, *rows = csv.reader(file)
+            self.rows = {pair_name(*row[:2]): row for row in rows if head == COLUMNS and len(row) == len(COLUMNS)}
 
-    def check(self, name: str, own: bool) -> bool:
-        """Whether the pair's file is there.
-
-        :raises FileExistsError: for a file of no pair.
-        :raises OSError: for a name that is too long."""
+    def has(self, name: str) -> bool:
+        """Whether the pair's file is there. :raises OSError: for a name that is too long."""
         for part in (name + '.csv').split('/'):
             with contextlib.suppress(FileNotFoundError):
-                os.lstat(os.path.join(self._path, part))
-        is_there = os.path.lexists(self.file(name))
-        if is_there and not own:
-            raise FileExistsError(f'{self.file(name)} is there, and of no pair of {TABLE}: move it away, or choose another folder')
-        return is_there
+                os.lstat(os.path.join(self.folder, part))
+        return name + '.csv' in self.written
 
     def content(self, measured: Measured) -> bytes:
         return measured.content()
 
     def export(self, state: _State, gone: Collection[str]) -> None:
-        for name in gone:
-            with contextlib.suppress(OSError):  # the file of another pair may be beside it
-                os.unlink(self.file(name))
-                os.rmdir(os.path.dirname(self.file(name)))
         for name, content in state.contents():
-            os.makedirs(os.path.dirname(self.file(name)), exist_ok=True)
-            write_whole(self.file(name), content)
+            write_whole(self.place(name + '.csv'), content)
         text = io.StringIO(newline='')
         csv.writer(text).writerows([COLUMNS, *(row for name, row in {**self.rows, **state.rows()}.items() if name not in gone)])
-        write_whole(self._table, text.getvalue().encode())
-
-    def file(self, name: str) -> str:
-        return os.path.join(self._path, name + '.csv')
+        write_whole(self.place(TABLE), text.getvalue().encode())
+        self.written -= {name + '.csv' for name in gone}
 
 
 class _Hdf5:
@@ -124,6 +110,7 @@ class _Hdf5:
         self._path, self.rows = path, dict[str, Row]()
         self._old: Any = {}
         h5py = import_h5py()
+        remove_parts(path)
         if os.path.exists(path) and os.path.getsize(path):
             try:
                 self._old = h5py.File(path, 'r')
@@ -142,12 +129,8 @@ class _Hdf5:
         """Of pairs, and of what the user may have added."""
         return [name for first, group in self._old.items() for name in ([f'{first}/{each}' for each in group] if hasattr(group, 'keys') else [first])]
 
-    def file(self, name: str) -> str:
-        return self._path
-
-    def check(self, name: str, own: bool) -> bool:
-        """As of _Folder, by any name."""
-        return own
+    def has(self, name: str) -> bool:
+        return name in self.rows
 
     def content(self, measured: Measured) -> bytes:
         arrays, pose = io.BytesIO(), measured.pose
@@ -187,7 +170,7 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
     :return: how many pairs show the same, and of how many, with those that are left out.
     :raises ValueError: for a list without a pair of the folder's images.
     :raises FileExistsError: for a file or a folder that is of something else.
-    :raises BlockingIOError: if another process is writing it.
+    :raises OSError: if another process is writing it.
     """
     options.check()
     crew, masks, features, folder, out = Threads(thread_count(workers)), Masks(options.mask), Features(options), os.fspath(images), os.fspath(out)
@@ -219,28 +202,27 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
         gone.append(label)
 
     file = output_file(out) if is_hdf5 else os.path.join(os.path.realpath(out), TABLE)
-    os.makedirs(os.path.dirname(file), exist_ok=True)
     with contextlib.ExitStack() as stack:
-        stack.enter_context(only_writer(file + PARTIAL))
-        target: Union[_Hdf5, _Folder] = _Hdf5(file) if is_hdf5 else _Folder(file)
+        if is_hdf5:
+            stack.enter_context(only_writer(file + PARTIAL))
+        target = _Hdf5(file) if is_hdf5 else _Folder(file)
+        if isinstance(target, Results):
+            stack.enter_context(target)
         state = stack.enter_context(_State(file + PARTIAL))
         measured = state.rows()
         known = {**target.rows, **measured}
-        remove_parts({file, *map(target.file, measured)})
         for pair, label in labels.items():
             row = known.get(label, [])
             try:
-                if (target.check(label, bool(row)) or label in measured) and row[MARK] == marks[pair]:
+                if (target.has(label) or label in measured) and row[MARK] == marks[pair]:
                     found += row[FOUND] == '1'
                 else:
                     missing.append(pair)
-            except FileExistsError:
-                raise
             except OSError as e:
                 fail(label, f'{label}.csv cannot be written: {e.strerror}')
         progress = Progress('matching', len(listed), len(listed) - len(missing))
         ordered = [pair for tile in tiles(missing, IMAGES_HELD // 4) for pair in tile]  # so that images are held as long as they are needed
-        for pair, result in in_parallel(lambda pair: measure(views.of(names[pair[0]]), views.of(names[pair[1]]), features), ordered, crew):
+        for pair, result in in_parallel(lambda pair: measure(views.of(names[pair[0]]), views.of(names[pair[1]]), features), ordered, crew, (Exception,)):
             if isinstance(result, ImportError):
                 raise result
             if isinstance(result, Exception):

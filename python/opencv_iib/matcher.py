@@ -10,7 +10,7 @@ from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, integers, number
 from opencv_iib._arrays import ArrayOrArrays, as_arrays, as_codes, as_matrix
 from opencv_iib._copies import around, copied
-from opencv_iib._types import match_type
+from opencv_iib._types import of_cv2
 from opencv_iib.enums import Mode
 
 Matches = tuple[tuple[Any, ...], ...]
@@ -37,7 +37,7 @@ def _masks(masks: Any) -> list[np.ndarray]:
 
 def _objects(matches: Iterable[Sequence[int]], queries: int, compact: bool) -> Matches:
     """A tuple for each query, empty ones left out if that is asked for, of its matches: (query, train, image, distance)."""
-    make, rows = match_type(), [[] for _ in range(queries)]  # type: ignore[var-annotated]
+    make, rows = of_cv2('DMatch'), [[] for _ in range(queries)]  # type: ignore[var-annotated]
     for query, train, image, distance in matches:
         rows[query].append(make(query, train, image, float(distance)))
     return tuple(tuple(row) for row in rows if row or not compact)

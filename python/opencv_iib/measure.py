@@ -5,23 +5,24 @@ import copy
 import io
 import json
 import os
-from typing import Any, NamedTuple, Optional, Sequence, Union
+from typing import Any, NamedTuple, Optional, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib._arguments import InvalidOption, Path, sequence
 from opencv_iib._camera import AnyCamera, Camera, as_camera
+from opencv_iib._drawing import GOOD, INK, OTHER, draw
 from opencv_iib._files import check_images, check_outputs, write_whole
-from opencv_iib._images import Masks, check_picture, import_cv2, read_with_orientation, write_picture
+from opencv_iib._image_file import ImageFile, Masks
+from opencv_iib._images import check_picture, import_cv2, write_picture
 from opencv_iib._streams import is_open_file
 from opencv_iib._two_views import show_the_same
 from opencv_iib._upright import Turn, upright
-from opencv_iib.demo import GOOD, INK, OTHER, draw
 from opencv_iib.enums import Orientation
 from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.functions import match
-from opencv_iib.geometry import FoundPose, NoPose, findRelativePose
+from opencv_iib.geometry import RelativePose, findRelativePose
 from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.refinement import PropagatedMatches, RefinedMatches, prepared, propagateMatches
 from opencv_iib.rotation import matchRotated
@@ -38,7 +39,7 @@ class Measured(NamedTuple):
 
     matches: RefinedMatches
     bits: NDArray[np.int32]  #: of each match, that differ; -1 where the images were matched in views of them
-    pose: Union[FoundPose, NoPose, None]  #: None without cameras
+    pose: Optional[RelativePose]  #: None without cameras
     found: bool  #: there is a pose, or without cameras more matches than chance may give agree with one epipolar geometry or homography
     view: NDArray[np.float64]  #: 3 x 3: approximate affine map from pixels of the first image to pixels of the second
     rotation: float = 0  #: degrees by which the second image is rotated against the first, clockwise, besides EXIF's orientation; 0: less than 8
@@ -114,7 +115,7 @@ class Measured(NamedTuple):
 def check_suffix(path: Path) -> None:
     """:raises InvalidOption: for a file of a suffix that Measured.save does not know."""
     name = os.fspath(path)
-    if not (is_open_file(name) or name.lower().endswith(SUFFIXES) or os.path.exists(name) and not os.path.isfile(name)):
+    if not (is_open_file(name) or name.lower().endswith(SUFFIXES)):
         raise InvalidOption(f'{name}: end its name in {", ".join(SUFFIXES[:-1])} or {SUFFIXES[-1]}')
 
 
@@ -185,20 +186,21 @@ class View(NamedTuple):
         """:param name: by which it has its mask.
         :param described: its rows and codes, if they are known.
         :raises ValueError: for a file that is no image, or of another size than its camera's or its mask."""
-        stored, orientation = read_with_orientation(path, features.options.exif, of_camera=lens is not None)
+        try:
+            file = ImageFile(path, features.options.exif)
+            stored, orientation = file.colour, file.orientation if lens is None else file.orientation_of_camera
+            mask = masks.of(name, stored)
+        except ValueError as e:
+            raise type(e)(f'{path}: {e}') from None
         height, width = stored.shape[:2]
         if lens is not None and (lens.width, lens.height) != (width, height):
             raise InvalidOption(f'{path} has {width} x {height} pixels, its camera {lens.width} x {lens.height}: give the '
                                 f"image's own camera, PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in "
                                 'pixels')
-        image = upright(stored, orientation)
-        try:
-            mask = masks.of(name, stored)
-        except ValueError as e:
-            raise InvalidOption(f'{path}: {e}') from None
+        image, mask = upright(stored, orientation), None if mask is None else upright(mask, orientation)
         if described is None:
-            described = features(image, mask=None if mask is None else upright(mask, orientation))
-        return cls(stored, image, None if mask is None else upright(mask, orientation), Turn(orientation, width, height), lens, *described)
+            described = features(image, mask=mask)
+        return cls(stored, image, mask, Turn(orientation, width, height), lens, *described)
 
 
 def measure(first: View, second: View, features: Features) -> Measured:
@@ -283,6 +285,6 @@ class _Pair:
         seen = self._visible(*found[1:3])
         return PropagatedMatches(*(each[seen] for each in found)), int(seen[:len(given)].sum())
 
-    def _pose(self, *points: np.ndarray, scale: float = 0) -> Union[FoundPose, NoPose]:
+    def _pose(self, *points: np.ndarray, scale: float = 0) -> RelativePose:
         a, b = (lens.undistorted(some) for some, lens in zip(points, self.lenses))
         return findRelativePose(a, b, self.lenses[0].matrix, self.lenses[1].matrix, scale)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
 from opencv_iib._arrays import as_image
-from opencv_iib._types import match_type
+from opencv_iib._types import of_cv2
 from opencv_iib.keypoints import Keypoints, MatchesOfKeypoints, as_pairs, as_rows
 
 
@@ -71,7 +71,7 @@ def propagateMatches(image1: Union[ArrayLike, _core.PreparedImage], keypoints1: 
     found, *rows = _core.propagateMatches(images[0], as_rows(keypoints1), images[1], as_rows(keypoints2), as_pairs(matches1to2))
     if isinstance(matches1to2, np.ndarray) or (len(matches1to2) and not hasattr(matches1to2[0], 'queryIdx')):
         return PropagatedMatches(found.reshape(-1, 4)[:, :2], *float_rows(*rows))
-    make, distance = match_type(), float(np.finfo(np.float32).max)
+    make, distance = of_cv2('DMatch'), float(np.finfo(np.float32).max)
     added = [make(query, train, image, distance) for query, train, image in found[len(matches1to2):, :3].tolist()]
     return PropagatedMatches((*matches1to2, *added), *float_rows(*rows))
 

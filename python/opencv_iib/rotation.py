@@ -8,7 +8,7 @@ import numpy as np
 from opencv_iib import _core
 from opencv_iib._arguments import number
 from opencv_iib._arrays import as_image
-from opencv_iib._types import match_type
+from opencv_iib._types import of_cv2
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.keypoints import Keypoints, MatchesOfKeypoints, array_to_keypoints, as_pairs, as_rows
 from opencv_iib.matcher import HierarchicalMatcher
@@ -58,5 +58,5 @@ def matchRotated(image1: Any, image2: Any, extractor: IIBDescriptorExtractor, ma
              for given, described in zip(points, (first, second))]
     if isinstance(keypoints1, np.ndarray):
         return rotation, found[0], found[1], matches[:, [0, 1, 3]]
-    make = match_type()
+    make = of_cv2('DMatch')
     return rotation, found[0], found[1], tuple(make(*match) for match in matches.tolist())

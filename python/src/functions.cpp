@@ -113,6 +113,7 @@ void bindFunctions(nb::module_& m)
                 return cv::iib::logFalseAlarms(points1, points2, inliers, epipolar, threshold);
             },
             WithoutGil());
+    m.def("confidenceLimit", &cv::iib::confidenceLimit);
     nb::class_<Aligner>(m, "ImageAligner")  // which holds a view of the reference
             .def_static(
                     "create",

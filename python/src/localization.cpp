@@ -117,11 +117,13 @@ void bindLocalization(nb::module_& m)
             .def_prop_ro("cam_from_world",
                     [](const Location& self) {
                         return self.found ? std::make_optional(self.cameraFromWorld) : std::nullopt;
-                    })
+                    },
+                    nb::for_getter(nb::sig("def cam_from_world(self) -> typing.Any")))
             .def_prop_ro("covariance",
                     [](const Location& self) {
                         return self.found ? std::make_optional(cv::Mat(self.covariance)) : std::nullopt;
-                    })
+                    },
+                    nb::for_getter(nb::sig("def covariance(self) -> typing.Any")))
             .def_ro("matches", &Location::matches)
             .def_ro("inliers", &Location::inliers)
             .def_ro("pixels", &Location::pixels)

@@ -239,7 +239,7 @@ class Runs(Collection):
         self.interrupt()
         self.assertFalse(self.database.exists())
         real, described, matched = pipeline.magsac, [], []
-        with mock.patch.object(pipeline, 'decode_grey', lambda data: described.append(data)), \
+        with mock.patch.object(pipeline, 'ImageFile', lambda *file: described.append(file)), \
                 mock.patch.object(pipeline, 'magsac', lambda *a: matched.append(1) or real(*a)):
             counts = self.build()
         self.assertEqual(described, [])

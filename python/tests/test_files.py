@@ -7,7 +7,7 @@ from unittest import mock
 import numpy as np
 
 from opencv_iib import _core
-from opencv_iib._files import RECORD, check_outputs, new_results, only_writer, replaced, write_whole
+from opencv_iib._files import RECORD, Results, check_outputs, only_writer, replaced, write_whole
 from support import InFolder, files_end_at
 
 
@@ -30,17 +30,9 @@ class Files(InFolder):
 
     def results(self, *names, out='out', command='measure'):
         """Writes results called so."""
-        with self.started(out, command) as part:
+        with Results(str(self.folder / out), command) as results:
             for name in names:
-                Path(part, name).parent.mkdir(exist_ok=True)
-                Path(part, name).write_text('result')
-                os.utime(os.path.join(part, name), (1e9, 1e9))  # what the user writes in the same moment is newer
-
-    def press(self):
-        raise KeyboardInterrupt
-
-    def started(self, out='out', command='measure'):
-        return new_results(str(self.folder / out), command)
+                Path(results.place(name)).write_text('result')
 
     def test_a_file_takes_its_place_when_it_is_whole(self):
         path = self.folder / 'a'
@@ -103,11 +95,9 @@ class Files(InFolder):
         self.results('a', 'sub/d')
         self.assertEqual(self.names(), [f'out/{RECORD}', 'out/a', 'out/sub/d'])
         self.assertFalse((self.folder / 'out/more').exists())
-        with self.assertRaises(KeyboardInterrupt), self.started() as part:
-            Path(part, 'a').write_text('half')
-            raise KeyboardInterrupt
-        with self.assertRaises(KeyboardInterrupt), self.started('none'):
-            raise KeyboardInterrupt
+        for out in ('out', 'none'):
+            with self.assertRaises(KeyboardInterrupt), Results(str(self.folder / out), 'measure'):
+                raise KeyboardInterrupt
         self.assertEqual((self.names(), (self.folder / 'none').exists()), ([f'out/{RECORD}', 'out/a', 'out/sub/d'], False))
         (self.folder / 'link').symlink_to('disk/new')  # nothing is there yet
         (self.folder / 'disk').mkdir()
@@ -117,98 +107,46 @@ class Files(InFolder):
 
     @WITH_LINKS
     def test_results_replace_nothing_else(self):
-        mine = ['out.partial/thesis', 'out.partial.old/thesis', 'out.old/thesis', 'precious/thesis', 'bare/index.txt']
+        mine = ['out.partial/thesis', 'out.old/thesis', 'precious/thesis', 'bare/index.txt', 'thesis']
         self.write(*mine)
-        self.results('sub/a')
-        self.expect_precious(*mine)
-        for name in ('out/a.png', 'out/sub/notes', 'out/.hidden', 'out/.iib-part.txt', 'out/.iib-x/a'):
+        self.results('sub/a', 'b')
+        record = self.folder / 'out' / RECORD
+        record.write_text(record.read_text() + '"../thesis"\n"cut o')
+        for name in ('out/a.png', 'out/sub/notes', 'out/.hidden', 'out/sub/a.tmp', 'out/c'):
             self.write(name)
             with self.assertRaisesRegex(FileExistsError, '.*out holds .*, which no earlier run wrote'):
-                self.results('sub/a')
+                self.results('sub/a', 'c')
             self.expect_precious(name)
             (self.folder / name).unlink()
-        (self.folder / 'out/.iib-part').symlink_to('../precious')
-        with self.assertRaisesRegex(FileExistsError, 'holds .iib-part'):
-            self.results('sub/a')
-        for out, told in (('bare', 'holds index.txt'), ('precious/thesis', 'cannot be written')):
-            with self.assertRaisesRegex(FileExistsError, told):
-                self.results('a', out=out)
-        self.expect_precious(*mine)
-
-    @WITH_LINKS
-    def test_a_name_that_results_may_have_is_not_yet_one_of_them(self):
-        self.results('a', 'b')
         os.unlink(self.folder / 'out/b')
-        for make in (lambda path: path.write_text('precious'), lambda path: path.symlink_to('a')):
-            for name in ('b', 'c'):
-                make(self.folder / 'out' / name)
-                with self.assertRaisesRegex(FileExistsError, f'holds {name}'):
-                    self.results('a', 'b', 'c')
-                os.unlink(self.folder / 'out' / name)
-        with self.assertRaisesRegex(FileExistsError, 'holds results of measure'):
-            self.results('a', command='another')
-        self.write('thesis')
-        record = self.folder / 'out' / RECORD
-        record.write_text(record.read_text().replace('["a"', '["../thesis", "a"'))
-        self.results('b')
-        self.expect_precious('thesis')
-
-    def test_a_result_that_was_changed_to_one_of_its_size_is_the_users(self):
-        self.results('a')
-        (self.folder / 'out/a').write_text('MINE!!')
-        with self.assertRaisesRegex(FileExistsError, 'holds a, which was changed'):
-            self.results('a')
-        self.assertEqual((self.folder / 'out/a').read_text(), 'MINE!!')
-
-    def test_results_of_another_command_are_told_by_its_name(self):
-        self.results('a', command='localize')
-        with self.assertRaisesRegex(FileExistsError, 'out holds results of localize: choose another folder'):
-            self.results('a', command='align')
-
-    def test_what_comes_into_the_folder_meanwhile_stays(self):
-        self.results('sub/a', 'b', 'c')
-        with self.started() as part:
-            self.write('out/mine', 'out/sub/mine', 'out/b')
-            Path(part, 'c').touch()
-        self.assertEqual(self.names(), [f'out/{RECORD}', 'out/b', 'out/c', 'out/mine', 'out/sub/mine'])
-        for name, out in (('new', 'to'), ('c', 'again')):
-            self.results('c', out=out)
-            with self.assertRaisesRegex(FileExistsError, name + ' has come there'), self.started(out) as part:
-                for each in ('new', 'c'):
-                    Path(part, each).touch()
-                self.write(f'{out}/{name}')
-        self.expect_precious('out/mine', 'out/sub/mine', 'out/b', 'to/new', 'again/c')
+        (self.folder / 'out/b').symlink_to('../precious/thesis')
+        for out, told in (('out', 'holds b'), ('bare', 'holds index.txt'), ('precious/thesis', 'cannot be written')):
+            with self.assertRaisesRegex(FileExistsError, told):
+                self.results('b', out=out)
+        os.unlink(self.folder / 'out/b')
+        with Results(str(self.folder / 'out'), 'measure') as results:
+            self.write('out/mine', 'out/sub/mine')
+            Path(results.place('c')).touch()
+        self.assertEqual([name for name in self.names() if name.startswith('out/')], [f'out/{RECORD}', 'out/c', 'out/mine', 'out/sub/mine'])
+        self.expect_precious(*mine, 'out/mine', 'out/sub/mine')
+        with self.assertRaisesRegex(FileExistsError, 'out holds results of measure: choose another folder'):
+            self.results('c', command='align')
 
     def test_a_killed_run_leaves_nothing_in_the_way(self):
-        with mock.patch('opencv_iib._files._discard'), self.assertRaises(RuntimeError), self.started() as part:
-            Path(part, 'sub').mkdir()
-            for name in ('sub/a', 'c', 'd.12-3.tmp'):
-                Path(part, name).touch()
-            raise RuntimeError
-        self.results('b')
-        self.assertEqual(sorted(os.listdir(self.folder / 'out')), [RECORD, 'b'])
-        self.write('out/.iib-part/mine')  # of no run, which would have a record there
-        with self.assertRaisesRegex(FileExistsError, 'holds .iib-part/mine'):
-            self.results('b')
-        self.expect_precious('out/.iib-part/mine')
-
-    def test_a_run_that_is_killed_while_results_take_their_places_is_gone_on_with(self):
-        self.results('a', 'b', 'd')
-
-        def stop(*names, real=os.replace, left=iter(range(3))):  # two records, and a
-            real(*names) if next(left, None) is not None else self.press()
-        with mock.patch('os.replace', stop), mock.patch('opencv_iib._files._discard'), \
-                self.assertRaises(KeyboardInterrupt), self.started() as part:
-            for name in ('a', 'b', 'c'):
-                Path(part, name).write_text('other')
         self.results('a')
-        self.assertEqual(self.names(), [f'out/{RECORD}', 'out/a'])
+        with self.assertRaises(KeyboardInterrupt), Results(str(self.folder / 'out'), 'measure') as results:
+            for name in ('sub/b', 'c'):
+                Path(results.place(name) + '.12-3.tmp' * (name == 'c')).touch()
+            raise KeyboardInterrupt
+        self.assertEqual(self.names(), [f'out/{RECORD}', 'out/a', 'out/c.12-3.tmp', 'out/sub/b'])
+        self.results('d')
+        self.assertEqual(self.names(), [f'out/{RECORD}', 'out/d'])
 
     @WITH_LINKS
     def test_one_writes_at_a_time_in_python_and_cpp(self):
         out = self.folder / 'out'
         told = 'is being written by another process'
-        with new_results(str(out), 'measure'):
+        with Results(str(out), 'measure'):
             with self.assertRaisesRegex(FileExistsError, told):
                 self.results('a')
             with self.assertRaisesRegex(_core.error, told):

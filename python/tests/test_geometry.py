@@ -42,7 +42,7 @@ class RelativePose(unittest.TestCase):
         self.assertEqual(pose.inliers.tolist(), [[0]] * 4)
         self.assertEqual(pose.reason, 'no pose agrees with five matches or more')
         again = pickle.loads(pickle.dumps(pose))
-        self.assertEqual((type(again), again.reason, tuple(again[:3])), (opencv_iib.NoPose, pose.reason, (False, None, None)))
+        self.assertEqual((type(again), again.reason, tuple(again[:3])), (opencv_iib.RelativePose, pose.reason, (False, None, None)))
 
 
 class Alignment(unittest.TestCase):

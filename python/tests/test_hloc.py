@@ -85,7 +85,7 @@ class Export(Collection):
         with mock.patch.object(hloc, 'pair_name', side_effect=OSError('no space left')), self.assertRaises(OSError):
             self.export(self.hloc, force=True)
         self.assertEqual([file.read_bytes() for file in self.hloc], [b'precious'] * 3)
-        with self.assertRaisesRegex(ValueError, 'three files'):
+        with self.assertRaisesRegex(ValueError, 'another output too'):
             self.export(self.hloc[:1] * 3, force=True)
         with self.assertRaisesRegex(FileExistsError, 'an input too'):
             self.export([self.database, *self.hloc[1:]], force=True)

@@ -16,7 +16,8 @@ import opencv_iib
 from collection import Collection
 from opencv_iib.colmap import FeatureOptions
 from opencv_iib._exif import exif_focal_length, exif_orientation, gps_place
-from opencv_iib._images import decode_all, decode_first, decode_grey, find_images, in_8_bits, read_grey, read_with_orientation
+from opencv_iib._image_file import ImageFile
+from opencv_iib._images import decode, decode_all, decode_first, find_images, in_8_bits
 from opencv_iib._tiff import tiff_bytes
 from opencv_iib.features import DETECTORS, Features, to_colmap
 from support import cv2, optional, texture
@@ -73,7 +74,7 @@ class Files(Collection):
             for image in (plain, short, short * 16, short * 257, short * 9 + 300, plain / np.float32(255), plain.astype(np.float32), *others):
                 for suffix in ('.tif', '.png') if image.dtype == np.uint16 else ('.tif',):
                     file.write_bytes(encoded(image, suffix, *PLAIN * (suffix == '.tif')))
-                    found = read_grey(file), read_with_orientation(str(file))[0]
+                    found = ImageFile(file).grey, ImageFile(str(file)).colour
                     expected = expected or found
                     for one, other, exact in zip(found, expected, (plain.ndim == 2, True)):  # grey of colours is rounded in two ways
                         self.assertEqual((one.dtype, one.shape), (np.uint8, other.shape))
@@ -81,11 +82,11 @@ class Files(Collection):
         hot = grey.astype(np.uint16) * 9 + 300
         hot[5, 5:9] = 65535
         file.write_bytes(encoded(hot, '.tif'))
-        np.testing.assert_allclose(np.delete(read_grey(file), 5, 0).astype(int), np.delete(grey, 5, 0), atol=2)
+        np.testing.assert_allclose(np.delete(ImageFile(file).grey, 5, 0).astype(int), np.delete(grey, 5, 0), atol=2)
         holed = grey.astype(np.float32)
         holed[:9] = np.nan
         file.write_bytes(encoded(holed, '.tif'))
-        self.assertEqual((read_grey(file)[:9].max(), read_grey(file)[9:].max()), (0, 255))
+        self.assertEqual((ImageFile(file).grey[:9].max(), ImageFile(file).grey[9:].max()), (0, 255))
         for values in ((1e30, np.inf), (3e38, -3e38), (-np.inf, np.nan)):
             wild = grey.astype(np.float32)
             wild[5, 5:7] = values
@@ -94,7 +95,7 @@ class Files(Collection):
             wide = np.where(grey < 99, np.float32(values[0]), np.float32(values[1]))
             with warnings.catch_warnings():
                 warnings.simplefilter('error')
-                np.testing.assert_array_equal(np.delete(read_grey(file), 5, 0), np.delete(grey, 5, 0))
+                np.testing.assert_array_equal(np.delete(ImageFile(file).grey, 5, 0), np.delete(grey, 5, 0))
                 if values[0] == 3e38:
                     np.testing.assert_array_equal(in_8_bits(wide, False), np.where(grey < 99, 255, 0))
         ramp = np.linspace(-1, 1, 256).reshape(16, 16)
@@ -102,8 +103,8 @@ class Files(Collection):
             for size in (1, 3e38, np.finfo(kind).max):
                 np.testing.assert_array_equal(in_8_bits((ramp * size).astype(kind), False).ravel(), np.arange(256))
         file.write_bytes(encoded(np.full((40, 40), np.nan, np.float32), '.tif'))
-        with self.assertRaisesRegex(ValueError, 'other: the image holds no finite number'):
-            read_with_orientation(file)
+        with self.assertRaisesRegex(ValueError, 'the image holds no finite number'):
+            ImageFile(file).colour
 
     @unittest.skipIf(tifffile is None, 'no tifffile')
     def test_pages_of_tiff(self):
@@ -139,7 +140,7 @@ class Files(Collection):
         without = plain.getvalue().replace(entry, struct.pack('<HHI', 0xFDE8, 3, 1))  # no tag says what the numbers mean
         self.assertNotEqual(without, plain.getvalue())
         np.testing.assert_array_equal(decode_first(without), grey)
-        np.testing.assert_array_equal(decode_grey(without), grey)
+        np.testing.assert_array_equal(decode(without), grey)
         for channels in (2, 4, 5):  # with alpha that is not 255
             image = np.dstack([grey, grey[::-1], grey[:, ::-1], 255 - grey, grey][:channels])
             for largest in (2**32, -1):
@@ -148,13 +149,13 @@ class Files(Collection):
         five, width = tiff_bytes([image]), struct.Struct('<HHII')
         for wrong in (0, 1 << 24):
             with self.assertRaisesRegex(ValueError, f'it has {wrong} x 40 pixels'):
-                decode_grey(five.replace(width.pack(256, 4, 1, 60), width.pack(256, 4, 1, wrong)).replace(width.pack(256, 3, 1, 60), width.pack(256, 4, 1, wrong)))
+                decode(five.replace(width.pack(256, 4, 1, 60), width.pack(256, 4, 1, wrong)).replace(width.pack(256, 3, 1, 60), width.pack(256, 4, 1, wrong)))
         two = tiff_bytes([image[..., :2]])
         with mock.patch.dict('sys.modules', tifffile=None):
             np.testing.assert_array_equal(decode_first(plain.getvalue()), grey)
             for data in (without, two):
                 with self.assertRaisesRegex(ValueError, r'pip install opencv-iib\[tiff\]'):
-                    decode_grey(data)
+                    decode(data)
 
     def test_tiffs_that_are_stored_turned_are_read_as_they_are_stored(self):  # which cv2 turns in any case
         image = np.arange(600, dtype=np.uint16).reshape(20, 30)
@@ -215,7 +216,7 @@ class Files(Collection):
 class Found(Collection):
 
     def test_every_detector(self):
-        image = read_grey(self.images / 'a.png')
+        image = ImageFile(self.images / 'a.png').grey
         for name in DETECTORS:
             with self.subTest(name):
                 try:
@@ -232,7 +233,7 @@ class Found(Collection):
 
     def test_the_recommended_chain_is_the_default(self):
         features, iib = Features(FeatureOptions(points=150)), opencv_iib.IIB.createRecommended(150)
-        image = read_grey(self.images / 'a.png')
+        image = ImageFile(self.images / 'a.png').grey
         keypoints, codes = iib.detectAndCompute(image)
         for found, expected in zip(features(image), (opencv_iib.keypoints_to_array(keypoints), codes)):
             np.testing.assert_array_equal(found, expected)

@@ -14,7 +14,7 @@ import opencv_iib
 from opencv_iib import _upright
 from opencv_iib._exif import MIRRORED
 from opencv_iib._files import RECORD
-from opencv_iib.localization import Camera, FoundLocation, Localizer, Location, NoLocation, smooth_poses
+from opencv_iib.localization import Camera, Localizer, Location, smooth_poses
 from opencv_iib.localization import run as runs
 from support import REPOSITORY, cv2, optional, run_command, steps_meanwhile
 from wall import CAMERA, HEIGHT, OnWall, PLACES, WIDTH, photograph, pose, trajectory, wall, write_model
@@ -88,7 +88,6 @@ class Localization(OnWall):
         self.assertNotEqual(camera, Camera('PINHOLE', WIDTH, HEIGHT, (300, 300, 160, 121)))
         self.assertEqual((repr(camera), eval(repr(camera))), ("Camera('PINHOLE', 320, 240, [300.0, 300.0, 160.0, 120.0])", camera))
         self.assertTrue(found.found and not nothing.found)
-        self.assertEqual((type(found), type(nothing)), (FoundLocation, NoLocation))  # what type checkers are told
         self.assertNotEqual(found, nothing)
         self.assertRegex(repr(found), rf'^Location\(centre \[.*\], {found.inliers} of {found.matches} matches agree\)$')
         self.assertEqual(repr(nothing), f'Location(reason={nothing.reason!r})')
@@ -252,41 +251,36 @@ class Localization(OnWall):
         self.assertRegex(run_command(*mapping, larger)[2], r'\nmap: no keypoint was found in any .* of; .*320 x 240 .* 640 x 480: left out of the map\n$')
         self.assertFalse(os.path.exists(out) and os.listdir(out))
 
-    def test_what_the_user_puts_beside_results_stays(self):
-        out = self.path('out')
-        self.assertEqual(self.localize(out, '--pictures')[0], 0)
-        self.assertEqual(self.localize(out, '--pictures')[0], 0)
-        for name in ('matches/notes.txt', 'matches/mine.png'):
-            Path(out, name).write_text('precious')
-            self.check_error('holds ' + name, 'localize', '--map', self.map, '--images', self.dark, '--out', out)
-            self.assertEqual(Path(out, name).read_text(), 'precious')
-            os.unlink(os.path.join(out, name))
-        self.assertEqual(self.localize(out)[0], 0)
-        os.makedirs(os.path.join(out, 'matches'))
-        for name in ('matches/c.png', 'rigs.bin'):  # which results have had, or may have
-            Path(out, name).write_text('precious')
-            self.check_error('holds ' + name, 'localize', '--map', self.map, '--images', self.dark, '--out', out)
-            self.assertEqual(Path(out, name).read_text(), 'precious')
-            os.unlink(os.path.join(out, name))
-        os.rmdir(os.path.join(out, 'matches'))
-        table = Path(out, 'frames.csv')
-        table.write_text(table.read_text() + 'my own remarks\n')
-        self.check_error('holds frames.csv, which was changed', 'localize', '--map', self.map, '--images', self.dark, '--out', out)
-        self.assertIn('my own remarks', table.read_text())
-        table.unlink()
-        foreign = self.path('foreign')
-        os.makedirs(foreign)
-        for text in ('name,camera\na,b\n', 'x\0' * 200000, ''):
-            Path(foreign, 'frames.csv').write_text(text)
-            self.check_error('holds frames.csv', 'localize', '--map', self.map, '--images', self.dark, '--out', foreign)
-            self.assertEqual(Path(foreign, 'frames.csv').read_text(), text)
-        for beside in ('.partial', '.partial.old', '.new', '.iib_partial'):
-            os.makedirs(out + beside)
-            Path(out + beside, 'thesis').write_text('precious')
-        self.assertEqual(self.localize(out)[0], 0)
-        self.assertFalse(os.path.exists(os.path.join(out, 'matches')))
-        for beside in ('.partial', '.partial.old', '.new', '.iib_partial'):
-            self.assertEqual(Path(out + beside, 'thesis').read_text(), 'precious')
+    def test_no_command_replaces_what_is_the_users(self):
+        c, listing = os.path.join(self.dark, 'c.png'), Path(self.path('pairs.txt'))
+        listing.write_text('c.png a-b.png\n')
+        for command, *arguments in (('localize', '--map', self.map, '--images', self.dark, '--pictures'), ('align', c, self.dark),
+                                    ('map', '--model', self.model, '--images', self.images, '--points', '400', '--force'),
+                                    ('match', '--pairs', listing, '--images', self.dark, '--points', '300')):
+            out, foreign = self.path('out'), self.path('foreign')
+            first = run_command(command, *arguments, '--out', out)
+            self.assertIn(first[0], (0, 3, 4))
+            made = sorted(os.listdir(out))
+            for name in ('notes.txt', 'views/mine.png', 'matches/mine.png', '.hidden', 'rigs.bin'):
+                with self.subTest(command=command, name=name):
+                    os.makedirs(os.path.dirname(os.path.join(out, name)), exist_ok=True)
+                    Path(out, name).write_text('precious')
+                    self.check_error('holds ' + name, command, *arguments, '--out', out)
+                    self.assertEqual(Path(out, name).read_text(), 'precious')
+                    os.unlink(os.path.join(out, name))
+            os.makedirs(foreign)
+            for name in set(made) - {RECORD}:
+                if command != 'map' and os.path.isfile(os.path.join(out, name)):  # --force replaces a map
+                    Path(foreign, name).write_bytes(b'precious' * 9999)  # which the command would write
+                    self.check_error('holds ' + name, command, *arguments, '--out', foreign)
+                    self.assertEqual(Path(foreign, name).read_bytes(), b'precious' * 9999)
+                    os.unlink(os.path.join(foreign, name))
+            beside = [out + end for end in ('.partial', '.partial.old', '.new', '.old')]
+            for name in beside:
+                Path(name).write_text('precious')
+            self.assertEqual(run_command(command, *arguments, '--out', out)[0], first[0])
+            self.assertEqual(([Path(name).read_text() for name in beside], set(os.listdir(out)) - {'matches', 'views'}),
+                             (['precious'] * 4, set(made) - {'matches', 'views'}))
 
 
 if __name__ == '__main__':

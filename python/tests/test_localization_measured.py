@@ -20,6 +20,7 @@ if not MISSING:
     sys.path.insert(0, str(REPOSITORY / 'tools/localization'))
     import measure
     import setups
+    import uncertainty
 
 
 @unittest.skipIf(MISSING, '%s is not installed' % ', '.join(MISSING))
@@ -46,6 +47,12 @@ class Measured(unittest.TestCase):
                 setups.main()
             self.assertEqual([line.split(',')[:6] for line in (out / 'setups.csv').read_text().splitlines()[1:2]],
                              [['1.4 m apart', '', 'night', '2', '2', '2']])
+            with mock.patch.object(sys, 'argv', ['uncertainty.py', str(out / 'sure.csv'), str(data)]), mock.patch.object(measure, 'POINTS', 400), \
+                    redirect_stderr(StringIO()):
+                uncertainty.main()
+            rows = [line.split(',') for line in (out / 'sure.csv').read_text().splitlines()[1:]]
+            self.assertEqual([row[1:4] for row in rows], [['map', 'night', '0.png'], ['map', 'night', '1.png']])
+            self.assertLess(max(float(value) for row in rows for value in row[-2:]), 30)
             results, world = json.loads((out / 'results.json').read_text()), (out / 'world.js').read_text()
             video = cv2.VideoCapture(str(out / 'night.webm'))
             self.assertGreater(np.std(video.read()[1]), 10)

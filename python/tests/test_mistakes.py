@@ -174,14 +174,6 @@ class Texts(InFolder):
         self.expect(TypeError, 'images: a sequence of paths', lambda: align(self.folder / 'a.png', 'x', self.folder / 'out'))
         self.expect(TypeError, 'cameras: a sequence of cameras', lambda: match_images('a', 'b', cameras='PINHOLE,9,9,9,9,4,4'))
 
-    def test_files_that_nest_without_end(self):
-        deep = 100000
-        for name, text in (('a.json', '{"a":' + '[' * deep + ']' * deep + '}'), ('b.json', '{"a":' * deep + '1' + '}' * deep),
-                           ('a.yml', '%YAML:1.0\n---\na: ' + '[' * deep), ('b.yml', '%YAML:1.0\n---\na:\n   ' + '- ' * deep + '1\n'),
-                           ('a.xml', '<?xml version="1.0"?>\n<opencv_storage>' + '<a>' * deep + '</a>' * deep + '</opencv_storage>')):
-            (self.folder / name).write_text(text)
-            self.expect(opencv_iib.error, f'{name} nests 100 levels deep', lambda: IIB().read(self.folder / name))
-
     def test_presets_by_name(self):
         for name in ('COMPACT', 'compact', 'PRESET_Compact'):
             self.assertEqual(IIB.createFor(HessianDetector(), name).descriptorSize(), 64)

@@ -116,12 +116,9 @@ class Commands(InFolder):
 
     @unittest.skipIf(shutil.which('bash') is None, 'no bash')
     def test_what_is_not_open_is_told_before_work(self):
-        for out, closed in (('-', '>&-'), ('/dev/stdout', '>&-'), ('/dev/stderr', '2>&-'), ('/dev/fd/77', ''),
-                            ('/dev/fd/99999999999', '')):
-            done = subprocess.run(['bash', '-c', f'{sys.executable} -m opencv_iib match {self.a} {self.a} --out {out} {closed}'], capture_output=True)
-            self.assertEqual((done.returncode, done.stdout), (2, b''), out)
-            if '2>' not in closed:
-                self.assertEqual(done.stderr.decode(), f'match: {out} cannot be written: it is not open\n')
+        for out in ('-', '/dev/stdout'):
+            done = subprocess.run(['bash', '-c', f'{sys.executable} -m opencv_iib match {self.a} {self.a} --out {out} >&-'], capture_output=True)
+            self.assertEqual((done.returncode, done.stderr.decode()), (2, f'match: {out} cannot be written: it is not open\n'))
         done = subprocess.run(['bash', '-c', f'{sys.executable} -m opencv_iib localize --map {self.folder} --images - <&-'], capture_output=True)
         self.assertEqual((done.returncode, done.stderr), (2, b'localize: --images - needs standard input and output, and one is not open\n'))
 

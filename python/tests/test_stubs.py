@@ -26,7 +26,7 @@ UNREADABLE = {
     'is inconsistent, stub is a staticmethod but runtime is not': is_a('nb_func'),
     'is inconsistent, metaclass differs': is_a('nb_type'),
     "is a disjoint base at runtime, but isn't marked with @disjoint_base in the stub":
-        lambda value: is_a('nb_type')(value) or value in (opencv_iib.NoPose, opencv_iib.NoAlignment),
+        lambda value: is_a('nb_type')(value) or value in (opencv_iib.RelativePose, opencv_iib.Alignment),
     r'is inconsistent, stub does not have \*\*?\w+ parameter "\w+"': is_a('wrapper_descriptor'),
     r'is inconsistent, stub does not have \*args parameter "args"': is_a('nb_func'),  # on Python 3.13
     'is not present in stub': lambda value: getattr(value, '__qualname__', '').startswith('copied.<locals>.__'),
@@ -65,8 +65,6 @@ places: NDArray[np.float64] = camera.project([[0, 0, 1]])
 location = opencv_iib.localization.Localizer('m').localize(codes, camera)
 if location.found:
     matrices += [location.cam_from_world, location.covariance @ np.eye(6)]
-else:
-    nothing: None = location.cam_from_world
 opencv_iib.localization.build(pathlib.Path('m'), pathlib.Path('i'), 'o')
 ''' + '\n'.join(f'print(opencv_iib.{name})' for name in opencv_iib.__all__)
         wrong = ("iib.setBorder('drop')", 'text: str = iib.descriptorSize()', 'iib.detect_and_compute(codes)',

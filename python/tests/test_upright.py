@@ -13,7 +13,7 @@ from opencv_iib import _upright
 from opencv_iib.align import align
 from opencv_iib.colmap import FeatureOptions
 from opencv_iib._exif import MIRRORED, exif_orientation
-from opencv_iib._images import read_with_orientation
+from opencv_iib._image_file import ImageFile
 from opencv_iib.features import Features
 from opencv_iib.measure import match_images
 from opencv_iib.localization import Camera
@@ -22,6 +22,7 @@ from support import cv2, optional, run_command, texture
 h5py = optional('h5py')
 
 STORED = {1: 1, 2: 2, 3: 3, 4: 4, 5: 5, 6: 8, 7: 7, 8: 6}  # what turns an upright image to one that is upright by this orientation
+ROTATIONS = 3, 6, 8
 TURNED = [6, 3, 8, 2, 4, 5, 7]
 
 
@@ -63,7 +64,7 @@ class Pixels(unittest.TestCase):
                                     ('RADIAL_FISHEYE', 1, 2), ('THIN_PRISM_FISHEYE', 2, 8), ('RAD_TAN_THIN_PRISM_FISHEYE', 2, 12),
                                     ('SIMPLE_DIVISION', 1, 1), ('DIVISION', 2, 1), ('SIMPLE_FISHEYE', 1, 0), ('FISHEYE', 2, 0), ('EUCM', 2, 2)):
             camera = Camera(model, 640, 480, [300, 310][:focals] + [330, 230] + others[:more])
-            for orientation in _upright.ROTATIONS:
+            for orientation in ROTATIONS:
                 turn = _upright.Turn(orientation, 640, 480)
                 upright = camera.upright(orientation)
                 np.testing.assert_allclose(upright.upright({3: 3, 6: 8, 8: 6}[orientation]).params, camera.params, atol=1e-12)
@@ -101,9 +102,9 @@ class Commands(Collection):
         features = Features(FeatureOptions(points=200))
         rows, codes = features(self.a)
         for orientation in STORED:
-            image, told = read_with_orientation(self.write(self.a, orientation))
-            self.assertEqual((told, read_with_orientation(self.folder / f'{orientation}.png', False)[1]), (orientation, 1))
-            turned, same = features(image, told)
+            file = ImageFile(self.write(self.a, orientation))
+            self.assertEqual((file.orientation, ImageFile(self.folder / f'{orientation}.png', False).orientation), (orientation, 1))
+            turned, same = features(file.colour, file.orientation)
             np.testing.assert_array_equal(same, codes)
             np.testing.assert_array_equal(turned[:, 2], rows[:, 2])
         self.assertEqual([Features(FeatureOptions(points=9))(stored(self.a, o), o)[0][0, 3] for o in (1, 3, 6, 8)], [-1, 180, 270, 90])
@@ -123,8 +124,8 @@ class Commands(Collection):
             arguments = 'match', self.first, path, '--points', '300', '--out', self.folder / 'm.csv'
             right, wrong = (run_command(*arguments, *more)[1] for more in ((), ('--no-exif',)))
             self.assertNotIn('turned', right)
-            if orientation in _upright.ROTATIONS:  # which the images themselves tell
-                self.assertRegex(wrong, rf'is rotated by {dict(zip(_upright.ROTATIONS, (180, 270, 90)))[orientation]} degrees')
+            if orientation in ROTATIONS:  # which the images themselves tell
+                self.assertRegex(wrong, rf'is rotated by {dict(zip(ROTATIONS, (180, 270, 90)))[orientation]} degrees')
                 self.assertGreater(int(wrong.split()[1]), .7 * int(right.split()[1]))
             else:
                 self.assertRegex(wrong, 'may not show the same')
@@ -182,7 +183,7 @@ class Commands(Collection):
         picture = cv2.resize(cv2.GaussianBlur(np.random.default_rng(2).integers(0, 256, (120, 160), np.uint8), (0, 0), 1), (640, 480))
         first = self.folder / 'a.png'
         cv2.imwrite(str(first), picture)
-        images = [self.write(picture[20:320, 30:430], orientation) for orientation in _upright.ROTATIONS]
+        images = [self.write(picture[20:320, 30:430], orientation) for orientation in ROTATIONS]
         for _ in range(2):  # also of those that an earlier call has aligned
             done = align(first, images, self.folder / 'turned', exif=False)
             self.assertEqual([str(each).split(', ')[-1] for each in done], [f'rotated by {angle} degrees' for angle in (180, 270, 90)])

@@ -31,53 +31,17 @@ fail() {
     exit 2
 }
 
-# check_options SOURCE ARGUMENT...: whether the tool with these KEYS in its source takes the options, to be asked before
-# anything is installed for it; an option whose default is a number takes numbers, one with a list of words in [] takes one of
-# these in any case. Sets operands to the number of the other arguments, files or folders that must be there.
+# check_options SOURCE ARGUMENT...: whether the tool with these KEYS in its source has the options, to be asked before anything is
+# installed for it; their values it checks itself.
 check_options() {
-    keys=$(sed -n 's/^ *"{\([a-z-]*\) *| *\([^| ]*\)[^|]*|\(.*\)/\1|\2|\3/p' "$1")
+    keys=$(sed -n 's/^ *"{\([a-z-]*\) *|.*/\1/p' "$1")
     shift
-    operands=0 name="" given=""  # an option that waits for its value
     for argument in "$@"; do
-        if [ -n "$name" ]; then
-            check_value "$argument"
-            name=""
-            continue
-        fi
+        name=${argument%%=*}
         case "$argument" in
-        -?*) ;;
-        *)
-            [ -e "$argument" ] || fail "there is no $argument"
-            operands=$((operands + 1))
-            continue
-            ;;
+        -*) echo "$keys" | grep -qxF -e "${name#--}" || fail "unknown option $name; there are $(echo "$keys" | sed '/./s/^/--/' | paste -sd' ')" ;;
         esac
-        given=${argument%%=*}
-        name=${given#-}
-        name=${name#-}
-        echo "$keys" | cut -d'|' -f1 | grep -qxF -e "$name" ||
-            fail "unknown option $given; there are --$(echo "$keys" | cut -d'|' -f1 | paste -sd' ' | sed 's/ /, --/g')"
-        case "$argument" in
-        *=*) check_value "${argument#*=}" ;;
-        *)
-            # A switch; or the value follows.
-            ! echo "$keys" | grep -q -e "^$name||" || name=""
-            continue
-            ;;
-        esac
-        name=""
     done
-    [ -z "$name" ] || fail "option $given needs a value"
-}
-
-# check_value VALUE: of the option given, whose key is name.
-check_value() {
-    default=$(echo "$keys" | sed -n "s/^$name|\([^|]*\)|.*/\1/p")
-    words=$(echo "$keys" | sed -n "s/^$name|.*\[\(.*\)\].*/\1/p")
-    [ -z "$words" ] || echo "$words" | tr ' ' '\n' | grep -qixF -e "$1" || fail "$given takes one of $words, not '$1'"
-    case "$default,$1" in
-    [0-9]*,*[!0-9.]* | [0-9]*, | [0-9]*,0) fail "option $given takes a number above 0, not '$1'" ;;
-    esac
 }
 
 # check_definitions ARGUMENT...: whether each is one for CMake.
@@ -176,11 +140,6 @@ measured_commit() {
     commit=$(git -C "$root" rev-parse --short HEAD 2>/dev/null) || commit=unknown
     [ "$commit" = unknown ] || git -C "$root" diff --quiet HEAD -- . ':!doc' ':!README.md' || commit="$commit, dirty"
     echo "$commit"
-}
-
-# remember FILE COMMIT MACHINE: of which run a file in doc is.
-remember() {
-    "$python3" -B "$root/tools/pages/remember.py" "$@"
 }
 
 # The argument of configure with which the tools have the descriptors of opencv_contrib.

@@ -24,7 +24,7 @@ struct Experiment
 const Experiment EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
         {"estimators", estimators}, {"alignment", alignment}, {"matching", matching},
         {"robustness", robustness}, {"comparison", comparison}, {"uncertainty", uncertainty},
-        {"localization_uncertainty", localizationUncertainty}, {"views", warpedViews}, {"wxbs", wxbs}};
+        {"views", warpedViews}, {"wxbs", wxbs}};
 
 //! Results of other settings must not be mixed with these.
 void checkSettings(const Options& options)

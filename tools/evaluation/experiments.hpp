@@ -36,8 +36,6 @@ int alignment(const Options& options, const std::vector<ImagePair>& pairs);
 int matching(const Options& options, const std::vector<ImagePair>& pairs);
 //! How many of the errors of poses, alignments and refined points are inside what was told of them.
 int uncertainty(const Options& options, const std::vector<ImagePair>& pairs);
-//! Whether Localizer finds images where it says, as surely as it says, in maps of the other views below the roots.
-int localizationUncertainty(const Options& options, const std::vector<ImagePair>& pairs);
 int robustness(const Options& options, const std::vector<ImagePair>& pairs);
 //! matchViews and others on a photograph of each sequence and its view from elsewhere, computed; matchViews on unrelated images.
 int warpedViews(const Options& options, const std::vector<ImagePair>& pairs);

@@ -20,7 +20,7 @@ using cv::iib::IIBDescriptorExtractor;
 const double MOST_MOVED = .06;  // of a corner, in parts of the image's size
 const size_t STRANGERS = 3;     // of each pair, views of other places
 const int BORDER = 20;          // pixels beside a rectified image's border, where nothing is looked for
-const double FAR = 3;           // pixels from the truth: a wrong match, whose place no deviation tells
+const double FAR = 3;           // pixels from the truth: a wrong match, whose place no deviation describes
 
 struct Matched
 {
@@ -39,28 +39,6 @@ Matched matched(const cv::Mat& first, const cv::Mat& second, int points, const c
     HierarchicalMatcher::createRecommended()->match(codes1, codes2, m.matches);
     return m;
 }
-
-//! Rows of the table, one for a quantity of a pair.
-class Told
-{
-public:
-    Told(ResultTable& table_, const Fields& pair_) : table(table_), pair(pair_) {}
-
-    //! @param squared errors in standard deviations, with so many degrees of freedom.
-    void add(const std::string& quantity, const std::vector<double>& squared, int freedom) const
-    {
-        Fields row = pair;
-        row.insert(row.end(), {quantity, std::to_string(squared.size())});
-        for (double level : LEVELS)
-            row.push_back(std::to_string(std::count_if(
-                    squared.begin(), squared.end(), [&](double e) { return chanceOf(e, freedom) < level; })));
-        table.append(row);
-    }
-
-private:
-    ResultTable& table;
-    Fields pair;
-};
 
 //! A pair as one camera sees it, with masks.
 struct Stereo
@@ -90,13 +68,43 @@ Stereo rectified(const Stereo& stereo)
     return turned;
 }
 
-void judgePose(const Stereo& stereo, int points, const Told& told)
+cv::Matx33d fundamentalOf(const ViewPair& pair)
+{
+    const cv::Vec3d t = pair.translation;
+    const cv::Matx33d cross(0, -t[2], t[1], t[2], 0, -t[0], -t[1], t[0], 0);
+    return pair.targetCamera.inv().t() * cross * pair.rotation * pair.referenceCamera.inv();
+}
+
+//! Errors of refined points of the second image across the true epipolar lines; wrong matches are left out.
+std::vector<JudgedError> acrossLines(const cv::Matx33d& fundamental, const cv::Mat& points1,
+        const cv::Mat& points2, const cv::Mat& covariances, const cv::Mat& similarities)
+{
+    std::vector<JudgedError> errors;
+    for (int i = 0; i < points1.rows; i++)
+    {
+        const cv::Vec2f a = points1.at<cv::Vec2f>(i), b = points2.at<cv::Vec2f>(i);
+        const cv::Vec3f c = covariances.at<cv::Vec3f>(i);
+        const cv::Vec3d line = fundamental * cv::Vec3d(a[0], a[1], 1);
+        const cv::Vec2d normal = cv::normalize(cv::Vec2d(line[0], line[1]));
+        const double error =
+                (line[0] * b[0] + line[1] * b[1] + line[2]) / cv::norm(cv::Vec2d(line[0], line[1]));
+        const cv::Vec2d along = cv::Matx22d(c[0], c[1], c[1], c[2]) * normal;
+        if (similarities.at<float>(i) >= 0 && std::abs(error) < FAR)
+            errors.push_back(judged(cv::Vec<double, 1>(error), cv::Matx<double, 1, 1>(normal.dot(along))));
+    }
+    return errors;
+}
+
+void judgePose(const Stereo& stereo, int points, const ErrorRows& rows)
 {
     const ViewPair& pair = stereo.pair;
     Matched m = matched(stereo.first, stereo.second, points, stereo.mask1, stereo.mask2);
-    cv::Mat points1, points2, R, t, covariance;
-    cv::iib::propagateMatches(stereo.first, m.first, stereo.second, m.second, m.matches, points1, points2);
-    std::vector<double> rotation, direction;
+    cv::Mat points1, points2, covariances, similarities, R, t, covariance;
+    cv::iib::propagateMatches(stereo.first, m.first, stereo.second, m.second, m.matches, points1, points2,
+            covariances, similarities);
+    rows.add("propagated points, across epipolar lines",
+            acrossLines(fundamentalOf(pair), points1, points2, covariances, similarities), 1);
+    std::vector<JudgedError> rotation, direction;
     if (cv::iib::findRelativePose(points1, points2, pair.referenceCamera, pair.targetCamera, R, t,
                 cv::noArray(), 0, covariance))
     {
@@ -104,18 +112,18 @@ void judgePose(const Stereo& stereo, int points, const Told& told)
         const cv::Vec3d found(t), truth = cv::normalize(pair.translation);
         const cv::Matx<double, 5, 5> all(covariance);
         rotation.push_back(
-                squaredOf(cv::Affine3d(pair.rotation * turnedBack).rvec(), all.get_minor<3, 3>(0, 0)));
-        direction.push_back(squaredOf(alongTangents(found, truth), all.get_minor<2, 2>(3, 3)));
+                judged(cv::Affine3d(pair.rotation * turnedBack).rvec(), all.get_minor<3, 3>(0, 0)));
+        direction.push_back(judged(alongTangents(found, truth), all.get_minor<2, 2>(3, 3)));
     }
-    told.add("rotation of findRelativePose", rotation, 3);
-    told.add("direction of findRelativePose", direction, 2);
+    rows.add("rotation of findRelativePose", rotation, 3);
+    rows.add("direction of findRelativePose", direction, 2);
 }
 
 //! Of rendered places without the number of the instance, since rooms have furniture in common, and facades windows.
 std::string kindOf(const ViewPair& pair) { return pair.set.substr(0, pair.set.find_last_of('_')); }
 
 //! Images of different places, of which no pose may be found.
-void judgeStrangers(const ViewPair& pair, const ViewPair& other, int points, const Told& told)
+void judgeStrangers(const ViewPair& pair, const ViewPair& other, int points, const ErrorRows& rows)
 {
     const cv::Mat first = readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE),
                   second = readImage(other.targetFile, cv::IMREAD_GRAYSCALE);
@@ -124,18 +132,18 @@ void judgeStrangers(const ViewPair& pair, const ViewPair& other, int points, con
     cv::iib::propagateMatches(first, m.first, second, m.second, m.matches, points1, points2);
     const bool found =
             cv::iib::findRelativePose(points1, points2, pair.referenceCamera, other.targetCamera, R, t);
-    told.add("pose of findRelativePose",
-            std::vector<double>(found ? 1 : 0, std::numeric_limits<double>::infinity()), 2);
+    rows.add("pose of findRelativePose",
+            std::vector<JudgedError>(found ? 1 : 0, {std::numeric_limits<double>::infinity(), 0, 0}), 2);
 }
 
-void judgePoints(const ImagePair& pair, int points, const Told& told)
+void judgePoints(const ImagePair& pair, int points, const ErrorRows& rows)
 {
     const LoadedPair loaded = loadPair(pair);
     const Matched m = matched(loaded.reference, loaded.target, points);
     cv::Mat points1, points2, covariances, similarities;
     cv::iib::refineMatches(loaded.reference, m.first, loaded.target, m.second, m.matches, points1, points2,
             covariances, similarities);
-    std::vector<double> squared;
+    std::vector<JudgedError> errors;
     for (int i = 0; i < points1.rows; i++)
     {
         const cv::Vec2f a = points1.at<cv::Vec2f>(i), b = points2.at<cv::Vec2f>(i);
@@ -143,12 +151,12 @@ void judgePoints(const ImagePair& pair, int points, const Told& told)
         const cv::Vec3d there = loaded.homography * cv::Vec3d(a[0], a[1], 1);
         const cv::Vec2d error(b[0] - there[0] / there[2], b[1] - there[1] / there[2]);
         if (similarities.at<float>(i) >= 0 && cv::norm(error) < FAR)
-            squared.push_back(squaredOf(error, cv::Matx22d(c[0], c[1], c[1], c[2])));
+            errors.push_back(judged(error, cv::Matx22d(c[0], c[1], c[1], c[2])));
     }
-    told.add("points of refineMatches", squared, 2);
+    rows.add("points of refineMatches", errors, 2);
 }
 
-void judgeAlignment(const ImagePair& pair, uint64 seed, const Told& told)
+void judgeAlignment(const ImagePair& pair, uint64 seed, const ErrorRows& rows)
 {
     const LoadedPair loaded = loadPair(pair);
     cv::RNG random(seed);
@@ -164,25 +172,23 @@ void judgeAlignment(const ImagePair& pair, uint64 seed, const Told& told)
     const cv::Matx33d moved = cv::getPerspectiveTransform(from, to);
     cv::Mat image, transform, error;
     cv::warpPerspective(loaded.target, image, moved, size, cv::INTER_CUBIC, cv::BORDER_REFLECT);
-    std::vector<double> squared;
+    std::vector<JudgedError> errors;
     if (cv::iib::alignImages(loaded.reference, image, transform, cv::iib::ALIGN_HOMOGRAPHY, error))
     {
         cv::perspectiveTransform(from, places, transform);
         cv::perspectiveTransform(from, trueOnes, (moved * loaded.homography).inv());
-        for (int k = 0; k < 4; k++)  // told is the deviation of a length, of two coordinates
-            squared.push_back(2 * std::pow(cv::norm(places[k] - trueOnes[k]) / error.at<double>(k), 2));
+        for (int k = 0; k < 4; k++)  // reported is the deviation of a length, of two coordinates
+            errors.push_back(judged(cv::Vec2d(cv::Point2d(places[k] - trueOnes[k])),
+                    cv::Matx22d::eye() * (error.at<double>(k) * error.at<double>(k) / 2)));
     }
-    told.add("corners of alignImages", squared, 2);
+    rows.add("corners of alignImages", errors, 2);
 }
 
 }  // namespace
 
 int uncertainty(const Options& options, const std::vector<ImagePair>& pairs)
 {
-    Fields columns = {"set", "sequence", "target", "quantity", "count"};
-    for (double level : LEVELS)
-        columns.push_back(cv::format("%g", level));
-    ResultTable table(options.out + "/uncertainty.csv", columns, 4);
+    ResultTable table(options.out + "/uncertainty.csv", ErrorRows::columns({"set", "sequence", "target"}), 4);
     std::vector<Task> tasks;
     const std::vector<ViewPair> views = findViewPairs(options.roots);
     cv::RNG random(1);
@@ -193,7 +199,7 @@ int uncertainty(const Options& options, const std::vector<ImagePair>& pairs)
         const Fields key = {"strangers", pair.set + " " + std::to_string(i), other.set + " " + other.target};
         if (kindOf(pair) != kindOf(other) && !table.has({key[0], key[1], key[2], "pose of findRelativePose"}))
             tasks.push_back({key[1] + " and " + key[2], [&options, &table, pair, other, key] {
-                                 judgeStrangers(pair, other, options.points, Told(table, key));
+                                 judgeStrangers(pair, other, options.points, ErrorRows(table, key));
                              }});
     }
     for (const ViewPair& pair : views)
@@ -202,7 +208,7 @@ int uncertainty(const Options& options, const std::vector<ImagePair>& pairs)
             continue;
         const auto judge = [&](const Stereo& stereo) {
             judgePose(stereo, options.points,
-                    Told(table, {stereo.pair.set, stereo.pair.sequence, stereo.pair.target}));
+                    ErrorRows(table, {stereo.pair.set, stereo.pair.sequence, stereo.pair.target}));
         };
         tasks.push_back({pair.set + "/" + pair.sequence + "/" + pair.target, [pair, judge] {
                              const Stereo stereo = {pair, readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE),
@@ -220,8 +226,8 @@ int uncertainty(const Options& options, const std::vector<ImagePair>& pairs)
                 table.has({pair.set, pair.sequence, pair.target, "corners of alignImages"}))
             continue;
         tasks.push_back({pair.name(), [&options, &table, &pair, key, i] {
-                             judgePoints(pair, options.points, Told(table, key));
-                             judgeAlignment(pair, i + 1, Told(table, key));
+                             judgePoints(pair, options.points, ErrorRows(table, key));
+                             judgeAlignment(pair, i + 1, ErrorRows(table, key));
                          }});
     }
     return runTasks("uncertainty", tasks, &table);

@@ -1,39 +1,87 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "opencv2/core.hpp"
+#include "opencv2/iib/verdict.hpp"
+#include "results.hpp"
 
 namespace iib_tools {
 
-//! Chances at which it is asked how many errors are inside.
+//! Probabilities of confidence limits: of how many errors each holds.
 const double LEVELS[] = {.1, .25, .5, .75, .9, .95, .99};
 
-//! Chance that a sum of squares of so many normal numbers, two or three, is smaller.
-inline double chanceOf(double squared, int freedom)
+//! An estimate's error beside its reported covariance.
+struct JudgedError
 {
-    const double rest = std::exp(-squared / 2);
-    if (freedom == 2 || rest == 0)
-        return 1 - rest;
-    return std::erf(std::sqrt(squared / 2)) - std::sqrt(2 * squared / CV_PI) * rest;
-}
+    double squared;       //!< Mahalanobis distance; infinite where the covariance says that there is no error
+    double logDeviation;  //!< logarithm of the geometric mean of the reported standard deviations
+    double score;  //!< logarithm of the reported density, of Student's t as of confidenceLimit, at the error
+};
 
-//! How many standard deviations an error is off, squared: infinite where it is told that there is none.
-template <int N> double squaredOf(const cv::Vec<double, N>& error, const cv::Matx<double, N, N>& covariance)
+template <int N> JudgedError judged(const cv::Vec<double, N>& error, const cv::Matx<double, N, N>& covariance)
 {
     cv::Vec<double, N> variances;
     cv::Matx<double, N, N> axes;
     cv::eigen(covariance, variances, axes);
     const cv::Vec<double, N> along = axes * error;
-    double squared = 0;
+    JudgedError result = {0, 0, 0};
     for (int k = 0; k < N; k++)
+    {
         if (along[k] != 0)
-            squared += variances[k] > 0 ? along[k] * along[k] / variances[k]
-                                        : std::numeric_limits<double>::infinity();
-    return squared;
+            result.squared += variances[k] > 0 ? along[k] * along[k] / variances[k]
+                                               : std::numeric_limits<double>::infinity();
+        result.logDeviation += std::log(variances[k]) / (2 * N);
+    }
+    const double twice = cv::iib::confidenceLimit(.5, 2);  // the scale matrix, in parts of the covariance
+    result.score = std::lgamma((N + 2) / 2.) - N / 2. * std::log(CV_PI * twice) - N * result.logDeviation -
+                   (N + 2) / 2. * std::log1p(result.squared / twice);
+    return result;
 }
+
+//! Rows of a table, one for a quantity of a pair or an image.
+class ErrorRows
+{
+public:
+    //! @param columns that name the pair or image.
+    static Fields columns(Fields columns)
+    {
+        columns.insert(columns.end(), {"quantity", "count"});
+        for (double level : LEVELS)
+            columns.push_back(cv::format("%g", level));
+        columns.insert(columns.end(), {"log_deviation", "score"});
+        return columns;
+    }
+
+    ErrorRows(ResultTable& table_, const Fields& name_) : table(table_), name(name_) {}
+
+    //! @param dimensions of each error; its count within the limit of each level, and sums, are written.
+    void add(const std::string& quantity, const std::vector<JudgedError>& errors, int dimensions) const
+    {
+        Fields row = name;
+        row.insert(row.end(), {quantity, std::to_string(errors.size())});
+        for (double level : LEVELS)
+            row.push_back(
+                    std::to_string(std::count_if(errors.begin(), errors.end(), [&](const JudgedError& error) {
+                        return error.squared < cv::iib::confidenceLimit(level, dimensions);
+                    })));
+        double logDeviation = 0, score = 0;
+        for (const JudgedError& error : errors)
+        {
+            logDeviation += error.logDeviation;
+            score += error.score;
+        }
+        row.insert(row.end(), {text(logDeviation), text(score)});
+        table.append(row);
+    }
+
+private:
+    ResultTable& table;
+    Fields name;
+};
 
 //! The angles by which a direction errs, in the axes of findRelativePose's documentation.
 inline cv::Vec2d alongTangents(const cv::Vec3d& found, const cv::Vec3d& truth)

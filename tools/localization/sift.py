@@ -3,6 +3,7 @@
 """A baseline for opencv_iib.localization: SIFT with the geometry of pycolmap."""
 import dataclasses
 import itertools
+import tempfile
 from typing import Any
 
 import cv2
@@ -13,9 +14,6 @@ import opencv_iib
 
 RATIO = .8  # of the ratio test
 COMPARED, MAX_ERROR, LEAST_INLIERS = 5, .006, 15  # images of the map; share of the longer side; of a pose
-MAX_PIXELS = 4.  # of a match from its epipolar line, and of a keypoint from its projected point
-FAR = .01  # radians: more parallel rays may meet on either side within the noise
-MIN_ANGLE = 1.5  # degrees between the rays of a point
 
 
 @dataclasses.dataclass
@@ -38,66 +36,26 @@ def matched(a, b):
     return np.stack([rows[kept], nearest[kept]], axis=1)
 
 
-def consistent(model, a, points_a, b, points_b):
-    """Which matches of two images satisfy the epipolar constraint of their poses, with rays that meet before both cameras.
-
-    :param points_a: M x 2, COLMAP's pixels of image a; points_b: the matched pixels of image b.
-    """
-    image_a, image_b = model.image(a), model.image(b)
-    b_from_a = image_b.cam_from_world() * image_a.cam_from_world().inverse()
-    if not len(points_a) or not np.linalg.norm(b_from_a.translation):
-        return np.zeros(len(points_a), bool)
-    essential = pycolmap.essential_matrix_from_pose(b_from_a)
-    rays_a, rays_b = image_a.camera.cam_ray_from_img(points_a), image_b.camera.cam_ray_from_img(points_b)
-    planes_a, planes_b = rays_b @ essential, rays_a @ essential.T
-    product = np.abs((rays_a * planes_a).sum(1))
-    limit_a, limit_b = (image.camera.cam_from_img_threshold(MAX_PIXELS) for image in (image_a, image_b))
-    in_plane = (product < limit_a * np.linalg.norm(planes_a, axis=1)) & (product < limit_b * np.linalg.norm(planes_b, axis=1))
-    turned = rays_a @ b_from_a.rotation.matrix().T
-    normals = np.cross(turned, rays_b)
-    ahead_a, ahead_b = ((np.cross(rays, b_from_a.translation) * normals).sum(1) > 0 for rays in (rays_b, turned))
-    far = np.linalg.norm(normals, axis=1) < FAR
-    return np.asarray(in_plane & (far | (ahead_a & ahead_b)))  # False for NaN: pixels that a camera cannot see
-
-
-def graph_of(model, matches):
-    """pycolmap.CorrespondenceGraph of the model's images.
-
-    :param matches: ids of two images and M x 2 indices of their keypoints.
-    """
-    graph = pycolmap.CorrespondenceGraph()
-    for i in model.reg_image_ids():
-        graph.add_image(i, model.image(i).num_points2D())
-    for a, b, pairs in matches:
-        geometry = pycolmap.TwoViewGeometry()
-        geometry.config = pycolmap.TwoViewGeometryConfiguration.CALIBRATED
-        geometry.inlier_matches = np.ascontiguousarray(pairs, np.uint32)
-        graph.add_two_view_geometry(a, b, geometry)
-    graph.finalize()
-    return graph
-
-
-def triangulate(model, graph):
-    """Triangulates points from matches and refines them; poses and cameras stay fixed."""
-    manager = pycolmap.ObservationManager(model, graph)
-    triangulator = pycolmap.IncrementalTriangulator(graph, model, manager)
-    options = pycolmap.IncrementalTriangulatorOptions(ignore_two_view_tracks=False, min_angle=MIN_ANGLE, random_seed=1)
-    for i in model.reg_image_ids():
-        triangulator.triangulate_image(options, i)
-    triangulator.complete_all_tracks(options)
-    triangulator.merge_all_tracks(options)
-    refinement = pycolmap.BundleAdjustmentOptions(
-        refine_focal_length=False, refine_extra_params=False, refine_rig_from_world=False, refine_sensor_from_rig=False,
-        print_summary=False)
-    refinement.ceres.loss_function_type = pycolmap.LossFunctionType.CAUCHY
-    everything = pycolmap.BundleAdjustmentConfig()
-    for i in model.reg_image_ids():
-        everything.add_image(i)
-    for _ in range(2):
-        manager.filter_all_points3D(MAX_PIXELS, MIN_ANGLE)
-        if model.num_points3D():
-            pycolmap.create_default_bundle_adjuster(refinement, everything, model).solve()
-    manager.filter_all_points3D(MAX_PIXELS, MIN_ANGLE)
+def triangulated(model, places, matches):
+    """The model with points that pycolmap triangulates. Arguments: keypoints by image; ids of two images and M x 2 indices of matches."""
+    with tempfile.TemporaryDirectory() as folder:
+        with pycolmap.Database.open(folder + '/database.db') as database:
+            for camera in model.cameras.values():
+                database.write_camera(camera, use_camera_id=True)
+            for rig in model.rigs.values():
+                database.write_rig(rig, use_rig_id=True)
+            for frame in model.frames.values():
+                database.write_frame(frame, use_frame_id=True)
+            for i, rows in places.items():
+                database.write_image(model.image(i), use_image_id=True)
+                database.write_keypoints(i, rows)
+            for a, b, pairs in matches:
+                geometry = pycolmap.TwoViewGeometry()
+                geometry.config, geometry.inlier_matches = pycolmap.TwoViewGeometryConfiguration.CALIBRATED, np.ascontiguousarray(pairs, np.uint32)
+                database.write_two_view_geometry(a, b, geometry)
+        options = pycolmap.IncrementalPipelineOptions(random_seed=1, extract_colors=False, min_num_matches=1)
+        options.triangulation.ignore_two_view_tracks = False
+        return pycolmap.triangulate_points(model, folder + '/database.db', folder, folder, options=options)
 
 
 class Sift:
@@ -109,14 +67,8 @@ class Sift:
         self._detector = opencv_iib.NormalizedDetector(self._sift) if normalized else self._sift
         model = pycolmap.Reconstruction(model)
         found = {i: self._describe(cv2.imread(str(images / model.image(i).name), cv2.IMREAD_GRAYSCALE)) for i in model.reg_image_ids()}
-        for i, (places, _) in found.items():
-            model.image(i).points2D = pycolmap.Point2DList([pycolmap.Point2D(place) for place in places])
-        matches = []
-        for a, b in itertools.combinations(found, 2):
-            pairs = matched(found[a][1], found[b][1])
-            fit = consistent(model, a, found[a][0][pairs[:, 0]], b, found[b][0][pairs[:, 1]])
-            matches.append((a, b, pairs[fit]))
-        triangulate(model, graph_of(model, matches))
+        matches = [(a, b, matched(found[a][1], found[b][1])) for a, b in itertools.combinations(found, 2)]
+        model = triangulated(model, {i: places for i, (places, _) in found.items()}, matches)
         self._images = []
         for i, (_, codes) in found.items():
             seen = [(row, point.point3D_id) for row, point in enumerate(model.image(i).points2D) if point.has_point3D()]

@@ -120,9 +120,9 @@ def cost():
 
 
 def uncertainty():
-    """A curve a quantity over all its data: told chance, and share of the errors that are inside."""
+    """For each quantity, a curve a kind of data: confidence level, and share of the errors within the limit."""
     rows = pd.read_csv(tables.RESULTS / 'uncertainty.csv').query('errors > 0')
-    levels = list(rows.columns[5:])
+    levels = list(rows.columns[5:-2])
     figure, axis = plt.subplots(figsize=(WIDTH, 5), layout='constrained')
     for quantity, each in rows.groupby('quantity'):
         shares = each[levels].mul(each['errors'], axis=0).sum() / each['errors'].sum()

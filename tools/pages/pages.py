@@ -35,7 +35,7 @@ def results_page(folder):
     if not context:
         sys.exit('%s: no results of iib_evaluation' % folder)
     ours = folder == tables.RESULTS
-    cost = ours and {**tables.learned_and_chain(), **tables.same_light(), 'classic': tables.classic_detectors().replace('`', '')}
+    cost = ours and {**tables.learned_figures(), **tables.pose_figures()}
     page = {folder / 'index.html': rendered('results.html.j2', {**context, 'cost': cost})}
     if ours:
         page[folder / 'cost.svg'] = charts.cost()
@@ -53,11 +53,15 @@ def localization_page(folder):
 def markdown():
     """Pages with tables, filled anew."""
     pages, used = {}, set()
+    figures = {'%s.%s' % (group, name): value for group, make in tables.FIGURES.items() for name, value in make().items()}
     for page in [ROOT / 'README.md', *sorted((ROOT / 'doc').rglob('*.md'))]:
         def fill(match):
             used.add(match[2])
             return match[1] + tables.ALL[match[2]]() + '\n'
-        pages[page] = re.sub(r'(<!-- figures (\w+) -->\n).*?(?=<!-- end of figures -->)', fill, page.read_text(), flags=re.DOTALL)
+        if re.search(r'^ *<!-- \w+\.\w+ -->', page.read_text(), re.M):
+            sys.exit('%s: a line that begins with a figure is taken as HTML: begin it with a word' % page)
+        text = re.sub(r'(<!-- figures (\w+) -->\n).*?(?=<!-- end of figures -->)', fill, page.read_text(), flags=re.DOTALL)
+        pages[page] = re.sub(r'(<!-- (\w+\.\w+) -->)[^<]*(?=<!-- -->)', lambda match: match[1] + figures[match[2]], text)
     if used != set(tables.ALL):
         sys.exit('no page shows the tables %s' % ', '.join(set(tables.ALL) - used))
     return pages

@@ -1,13 +1,18 @@
 #!/usr/bin/python3
-"""The least time of each test in several runs of opencv_perf_iib and opencv_perf_iib_geometry: speed.py OUT.csv MACHINE XML...
+"""The least time of each test in several runs of opencv_perf_iib and opencv_perf_iib_geometry: speed.py OUT.csv COMMIT MACHINE XML...
 
-OUT.csv gets milliseconds, a column an instruction set, which the XML tells by what OpenCV found; MACHINE comes into its first line.
+OUT.csv gets milliseconds, a column an instruction set, which the XML tells by what OpenCV found. MACHINE comes into its first line, with COMMIT
+into runs.csv if OUT.csv is that of doc/results.
 """
+import pathlib
 import re
 import sys
 import xml.etree.ElementTree
 
 import pandas as pd
+
+from summaries import remember, today
+from timings import RESULTS
 
 SETS = {'AVX-512': 'AVX512-SKX', 'AVX2': 'AVX2', 'SSE4.2': 'SSE4.2', 'baseline': 'SSE2', 'NEON': 'NEON'}
 
@@ -26,15 +31,17 @@ def tests(file):
 
 
 def main():
-    if len(sys.argv) < 4:
+    if len(sys.argv) < 5:
         sys.exit(__doc__)
-    out, machine, *files = sys.argv[1:]
+    out, commit, machine, *files = sys.argv[1:]
     rows = pd.DataFrame([row for file in files for row in tests(file)], columns=['test', 'parameters', 'points', 'set', 'ms'])
     table = rows.pivot_table('ms', ['test', 'parameters', 'points'], 'set', 'min', sort=False)
     version = xml.etree.ElementTree.parse(files[0]).getroot().get('cv_version')
     with open(out, 'w', encoding='utf-8') as file:
-        file.write('# OpenCV %s, %s\n' % (version, machine))
+        file.write('# OpenCV %s, %s, %s\n' % (version, machine, today()))
         table[[name for name in SETS if name in table]].to_csv(file, float_format='%.4g')
+    if pathlib.Path(out).resolve() == RESULTS / 'speed.csv':
+        remember(RESULTS / 'runs.csv', {'speed.csv': [commit, today(), machine]})
 
 
 if __name__ == '__main__':

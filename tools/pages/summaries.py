@@ -3,14 +3,12 @@
 
 PAIRS: the folder of iib_evaluation's results, with a row for each pair of images. OUT gets means over the pairs of a group, one
 row each, with their number and the ends of the 95 % confidence interval of what is named last (low, high; bootstrap over scenes).
-With COMMIT and MACHINE, runs.csv tells of each file that was written of which run it is: of this one where PAIRS has other rows for it
-than when summaries were last made.
+With COMMIT (or several, of all rows) and MACHINE, runs.csv says of which run each file is whose summary changed.
 """
 import collections
 import csv
 import datetime
-import hashlib
-import json
+import math
 import pathlib
 import random
 import re
@@ -194,7 +192,9 @@ def summarize(source, target, groups_of, keys, values, *commit):
     for key, scenes in groups.items():
         every = [pair for scene in scenes.values() for pair in scene]
         ends = interval([[pair[-1] for pair in scene] for scene in scenes.values()])
-        lines[key] = [*key, len(every), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends), *commit]
+        line = [*key, str(len(every)), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends), *commit]
+        if lines.get(key, [])[:-1] != line[:-1] or not commit:  # what was not measured again keeps its commit
+            lines[key] = line
     write(target, ['place', *keys, 'pairs', *values, 'low', 'high', *['commit'] * len(commit)], (lines[key] for key in sorted(lines)))
 
 
@@ -303,7 +303,7 @@ def summarize_learned(source, target):
     write(target, list(lines[0]), (line.values() for line in lines))
 
 
-LEVELS = {'0.1': .584, '0.25': 1.213, '0.5': 2.366, '0.75': 4.108, '0.9': 6.251, '0.95': 7.815, '0.99': 11.345}  # chi-square, 3 degrees of freedom
+LEVELS = '0.1', '0.25', '0.5', '0.75', '0.9', '0.95', '0.99'
 DATA = {'amos_daynight': 'webcams over a day', 'tilde_webcam': 'webcams over a year', 'mefb_exposure': 'other exposures',
         'photometric_stereo': 'other lamps', 'middlebury2014': 'other lamps and exposures (rooms)', 'iib_demo': "the authors' scene",
         'strangers': 'images of different places', 'oxford_affine': 'other exposures (leuven)', 'strecha rectified': 'the same photographs, rectified', 'strecha': "photographs with a laser's poses, one light"}
@@ -316,20 +316,20 @@ def data_of(name, light):
 
 
 def summarize_uncertainty(source, target):
-    """Of each quantity and kind of data: how many pairs or images, in how many something was found, how many errors that gives, and which
-    share of them is inside what was told for a level."""
+    """For each quantity and kind of data: pairs or images, those with an answer, errors, the share of errors within the limit of each level, the
+    geometric mean of the reported standard deviations, and the mean logarithmic score."""
     found = {}
-    for row in read(source):
+    for row in read(source) + read(source.with_name('localization_uncertainty.csv')):
         count = int(row['count'])
-        found.setdefault((row['quantity'], data_of(row['set'], row['sequence'])), []).append([1, count > 0, count] + [int(row[level]) for level in LEVELS])
-    for row in read(source.with_name('localization_uncertainty.csv')):
-        for what in ('centre', 'rotation'):
-            squared = row['squared_' + what]
-            inside = [squared != '' and float(squared) < limit for limit in LEVELS.values()]
-            found.setdefault((what + ' of Localizer', data_of(row['set'], row['light'])), []).append([1, squared != '', squared != '', *inside])
-    lines = [[*key, *map(sum, zip(*counts))] for key, counts in sorted(found.items(), key=lambda item: ('Localizer' in item[0][0], item[0]))]
-    write(target, ['quantity', 'data', 'pairs', 'found', 'errors', *LEVELS],
-          ([*line[:5], *('%.5g' % (n / line[4]) if line[4] else '' for n in line[5:])] for line in lines))
+        key = row['quantity'], data_of(row['set'], row.get('light') or row['sequence'])
+        found.setdefault(key, []).append([1, count > 0, count, *(int(row[level]) for level in LEVELS), float(row['log_deviation']), float(row['score'])])
+    lines = []
+    for key, counts in sorted(found.items(), key=lambda item: ('Localizer' in item[0][0], item[0])):
+        pairs, answered, errors, *sums = map(sum, zip(*counts))
+        *shares, deviation, score = (value / max(errors, 1) for value in sums)
+        numbers = ['%.5g' % value for value in (*shares, math.exp(deviation), score)]
+        lines.append([*key, pairs, answered, errors, *(numbers if errors else [''] * len(numbers))])
+    write(target, ['quantity', 'data', 'pairs', 'found', 'errors', *LEVELS, 'deviation', 'score'], lines)
 
 
 OTHERS = {'differences.csv': ('estimators.csv', summarize_differences), 'gains.csv': ('detected_points.csv', summarize_gains), 'curves.csv': ('detected_points.csv', summarize_curves),
@@ -348,21 +348,8 @@ def remember(file, found):
     write(file, ['file', 'commit', 'date', 'machine'], ([name, *runs[name]] for name in sorted(runs)))
 
 
-def record(source):
-    """Where it stands of which run a file of PAIRS is; it goes with the file, and then its commits are forgotten."""
-    return source.with_suffix('.run')
-
-
-def run_of(source, commit, machine):
-    """Commit, date and machine of a file of PAIRS: as last time unless its rows changed, and after the commits whose rows it had already."""
-    files = [source, source.with_name('localization_uncertainty.csv')][:1 + (source.name == 'uncertainty.csv')]
-    digest = hashlib.sha256(b''.join(file.read_bytes() for file in files if file.is_file())).hexdigest()
-    before, *run = json.loads(record(source).read_text()) if record(source).is_file() else [None]
-    if digest != before:
-        commits = dict.fromkeys(';'.join([*run[:1], commit]).split(';'))
-        run = [';'.join(commits), today(), machine]
-        record(source).write_text(json.dumps([digest, *run]))
-    return run
+def text_of(file):
+    return file.read_text() if file.is_file() else ''
 
 
 def main():
@@ -371,18 +358,14 @@ def main():
         return 2
     pairs, out = map(pathlib.Path, sys.argv[1:3])
 
-    def run(source):
-        return run_of(pairs / source, *sys.argv[3:]) if sys.argv[3:] else ['not recorded']
-    summarized = [name for name in PLANS if (pairs / name).is_file()]
-    for name in summarized:
-        summarize(pairs / name, out / name, *PLANS[name], *([run(name)[0]] if name in KEPT else []))
-    others = [name for name, (source, _) in OTHERS.items() if (pairs / source).is_file()]
-    for name in others:
-        source, make = OTHERS[name]
+    run = [sys.argv[3], today(), sys.argv[4]] if sys.argv[3:] else ['not recorded']
+    plans = {name: (name, lambda source, target: summarize(source, target, *PLANS[target.name], *run[:target.name in KEPT])) for name in PLANS}
+    made = {name: how for name, how in {**plans, **OTHERS}.items() if (pairs / how[0]).is_file()}
+    before = {name: text_of(out / name) for name in made}
+    for name, (source, make) in made.items():
         make(pairs / source, out / name)
-    if sys.argv[3:]:
-        sources = {**dict(zip(summarized, summarized)), **{name: OTHERS[name][0] for name in others if name != 'learned.csv'}}  # entered by hand
-        remember(out / 'runs.csv', {name: run(source) for name, source in sources.items()})
+    if sys.argv[3:]:  # the networks' own counts are entered by hand
+        remember(out / 'runs.csv', {name: run for name in made if text_of(out / name) != before[name] and name != 'learned.csv'})
     return 0
 
 

@@ -1,19 +1,18 @@
-"""Tables and sentences of figures in README.md and in pages of doc, of the results in doc/results, as Markdown.
+"""Tables and figures in README.md and in pages of doc, of the results in doc/results, as Markdown.
 
-They stand between the lines `<!-- figures NAME -->` and `<!-- end of figures -->`, NAME being a function below or one of the paper's
-tables. ALL has them.
+A table stands between the lines `<!-- figures NAME -->` and `<!-- end of figures -->`, NAME being a function below or one of the paper's
+tables; ALL has them. A figure within a sentence stands between `<!-- GROUP.NAME -->` and `<!-- -->`; FIGURES has a function for each
+group, which returns its figures by name.
 """
 import functools
 import itertools
 import json
 import pathlib
 import re
-import sys
 
 import summaries
-from releases import artifacts, fuzzing, night
 from summaries import table
-from timings import RESULTS, chains, describing, machine, matching, rows, same_points, speed_claim, step_by_step
+from timings import RESULTS, chains, describing, matching, rows, same_points, speed_figures, step_by_step
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -69,55 +68,21 @@ def poses_and_time():
     return table(['points of', 'points', 'matches', 'as they are, PoseLib', 'up to 10°', 'ms a pair', 'refined here', 'up to 10°', 'ms a pair'], lines)
 
 
-def learned_and_chain():
-    """Of 1000 of ALIKED's points, as many of the chain's and four times as many, all refined here: scores, and times by the chain's, as they are
-    shown; scores of 2048 of ALIKED's; the pairs."""
-    found = poses_by_time()
-    learned, *chain = (found[key]['refined'] for key in (('ALIKED-n16', 1000, 'LightGlue'), *(('recommended chain', points, 'mutual, a ratio') for points in (1000, 4000))))
-    best = found['ALIKED-n16', 2048, 'LightGlue']
-    return {'learned': '%.2f' % float(learned['at_5']), 'few': '%.2f' % float(chain[0]['at_5']), 'many': '%.2f' % float(chain[1]['at_5']),
-            'most': '%.2f' % float(best['refined']['at_5']), 'most_plain': '%.2f' % float(best['plain']['at_5']),
-            'times': '%.0f' % (float(learned['milliseconds']) / float(chain[1]['milliseconds'])), 'pairs': learned['pairs'],
-            'runs': other_run(learned, chain[1])}
-
-
 def other_run(*rows):
     """What is to be said of times that are compared, where they are of different runs."""
     return ', timed in different runs' if len({row['commit'] for row in rows}) > 1 else ''
 
 
-def learned_limit():
-    """README's sentence on learned features."""
-    return ('- With a GPU take [learned features](doc/guide.md#learned-features): ALIKED with LightGlue is the best of all with 2048 points, {most_plain} as it is and\n'
-            '  {most} refined here; with 1000 it has {learned}, the chain {few} (in another run than above). On one thread of a busy CPU, 4000 points of the\n'
-            "  chain have {many} and took [1/{times} of the time](doc/results/README.md#learned-features-and-time) of ALIKED's 1000 in PyTorch{runs};\n"
-            '  no GPU was timed.').format(**learned_and_chain())
-
-
-def learned_guide():
-    """The guide's sentence on the same."""
-    return ('With as many points ALIKED with LightGlue finds better poses than the chain: 1000, refined, have a score of {learned}, of the chain {few}. The best of all\n'
-            'are 2048 of ALIKED, {most_plain} as they are and {most} refined. 4000 of the chain have {many}, in 1/{times} of the processor time that 1000 of ALIKED take in\n'
-            'PyTorch on one thread{runs}; no score is of the run above ([figures](results/README.md#learned-features-and-time), with OpenCV 4.11).').format(**learned_and_chain())
-
-
-def classic_detectors():
-    """How OpenCV's detectors are used where time is measured."""
-    return ('ORB, AKAZE and SIFT are upright, as in the table of poses, and without the copies that SIFT makes of points. ORB and SIFT take two calls for that,\n'
-            'and so more time than where they are oriented.')
-
-
-def learned_claim():
-    """What may be said of learned features and the chain."""
-    found = poses_by_time()
-    chain = {points: found['recommended chain', points, 'mutual, a ratio']['refined'] for points in (1000, 2000, 4000)}
-    few, many = (found['ALIKED-n16', points, 'LightGlue'] for points in (1000, 2048))
-    return ('*By number of points* ALIKED with LightGlue finds better poses than the chain: of 1000 points %s as they are and %s refined, of 2048 %s and %s,\n'
-            'the chain, refined, of 1000, 2000 and 4000 points %s, %s and %s. *By time* 4000 points of the chain take %.0f ms of one core to their pose,\n'
-            '1000 of ALIKED %.0f: %.0f times as long, in PyTorch and on a machine that was busy with other work%s.' % (
-                *('%.2f' % float(ways[way]['at_5']) for ways in (few, many) for way in ('plain', 'refined')), *('%.2f' % float(row['at_5']) for row in chain.values()),
-                float(chain[4000]['milliseconds']), float(few['refined']['milliseconds']), float(few['refined']['milliseconds']) / float(chain[4000]['milliseconds']),
-                other_run(few['refined'], chain[4000])))
+def learned_figures():
+    """Scores of ALIKED with LightGlue and of the chain by number of points, milliseconds, and the ratio of ALIKED's 1000 to the chain's 4000."""
+    names, figures, found = {('ALIKED-n16', 'LightGlue'): 'aliked', ('recommended chain', 'mutual, a ratio'): 'chain'}, {}, {}
+    for (detector, points, matches), ways in poses_by_time().items():
+        if (detector, matches) in names:
+            name = '%s_%d' % (names[detector, matches], points)
+            found[name] = ways['refined']
+            figures.update({name + '_' + way: '%.2f' % float(row['at_5']) for way, row in ways.items()}, **{name + '_ms': '%.0f' % float(ways['refined']['milliseconds'])})
+    few, many = found['aliked_1000'], found['chain_4000']
+    return {**figures, 'times': '%.0f' % (float(few['milliseconds']) / float(many['milliseconds'])), 'pairs': few['pairs'], 'runs': other_run(few, many)}
 
 
 def paper(question):
@@ -266,13 +231,6 @@ def poses():
     return table(['points and descriptor', *head], lines)
 
 
-def pose_pairs():
-    """What README's poses are of."""
-    same, other = (estimates()[(CHAIN, place) + WAYS[-1]]['pairs'] for place in ('same light', 'other light'))
-    return ('- *Same light*: %s pairs of photographs of two buildings. *Other light*: %s pairs of rendered places at noon against dusk, night and\n'
-            '  winter; [two defaults](doc/results/README.md#poses) were settled when these had been seen, nothing else. In brackets 95 %% intervals over the places.' % (same, other))
-
-
 def pose_methods():
     """All methods that were measured, by what this project does and by what others do."""
     found, lines = estimates(), []
@@ -309,52 +267,40 @@ def compared(row, sign=1):
     return '%.2f (%.2f to %.2f)' % tuple(round(sign * float(less[key]), 2) + 0. for key in ('less', *('low', 'high')[::sign]))
 
 
-def same_light():
-    """In the same light the score of SIFT's matches as they are, by PoseLib, and the best of all."""
+def pose_figures():
+    """Scores of the chain, and the best that any estimator makes of others' points; what they have less on the same pairs."""
     every = estimates()
-    return {'sift': '%.2f' % float(every[('SIFT', 'SIFT'), 'same light', *WAYS[1]]['at_5']),
-            'best': '%.2f' % max(float(row['at_5']) for key, row in every.items() if key[1] == 'same light')}
+
+    def best(place, **where):
+        return max((row for row in rows('estimators.csv') if row['place'] == place and all(row[key] == value for key, value in where.items())),
+                   key=lambda row: float(row['at_5']))
+    ours, theirs, refined = (every[CHAIN, 'other light', *way] for way in (WAYS[-1], ('propagated', 'PoseLib'), ('refined', WAYS[-1][1])))
+    same, sift, orb = every[CHAIN, 'same light', *WAYS[-1]], best('other light', descriptor='SIFT'), best('other light', descriptor='ORB')
+    scores = {'chain': ours, 'refined': refined, 'poselib': theirs, 'chain_same': same, 'sift_same': every[('SIFT', 'SIFT'), 'same light', *WAYS[1]],
+              'best_same': best('same light')}
+    return {**{name: '%.2f' % float(row['at_5']) for name, row in scores.items()}, 'chain_ends': score(ours), 'sift_best': score(sift), 'sift_less': compared(sift),
+            'orb_best': score(orb), 'poselib_more': compared(theirs, -1), 'pairs': ours['pairs'], 'pairs_same': same['pairs']}
 
 
-def estimator_limit():
-    """README's sentence on other estimators of poses from the same matches."""
-    ours, theirs = (estimates()[CHAIN, 'other light', 'propagated', name] for name in ('findRelativePose', 'PoseLib'))
-    return ("- PoseLib's poses of the same refined matches are as good as `findRelativePose`'s, which refuses some, or better: in other light\n"
-            '  %.2f and %.2f, %s more on the same pairs.' % (float(theirs['at_5']), float(ours['at_5']), compared(theirs, -1)))
-
-
-def pose_claim():
-    """The README's sentence on poses: of others the best of all their ways, on normalized images too."""
-    ours = estimates()[CHAIN, 'other light', *WAYS[-1]]
-
-    def best(place, kinds=('plain', 'refined', 'propagated'), **where):
-        return max((row for row in rows('estimators.csv') if row['place'] == place and row['points'] in kinds and
-                    all(row[key] == value for key, value in where.items())), key=lambda row: float(row['at_5']))
-    sift, orb = (best('other light', descriptor=name) for name in ('SIFT', 'ORB'))
-    return ('On rendered places in other light, with 1000 points an image, the chain scores %s, of at most 1. The most that any of the\n'
-            '[estimators tried](doc/results/README.md#poses) makes of SIFT, at points of `NormalizedDetector` and refined here, is %s, %s less on the same\n'
-            'pairs, of ORB %s; the table has three of the estimators. In the same light\n'
-            "the chain gains nothing: SIFT's matches as they are have %s by PoseLib, the chain's refined ones %.2f ([all](doc/results/README.md#poses))." %
-            (score(ours), score(sift), compared(sift), score(orb), same_light()['sift'], float(estimates()[CHAIN, 'same light', *WAYS[-1]]['at_5'])))
-
-
-def photograph_claim():
-    """The README's sentences on photographs: a statue by many cameras, and places found in maps."""
-    statue = {row['method']: row for row in rows('photographs.csv') if row['scene'] == 'liberty' and row['registered']}
+def photograph_figures():
+    """A statue by many cameras, places found in maps, and points that are kept in other light."""
+    found = rows('photographs.csv')
+    statue = {row['method']: row for row in found if row['scene'] == 'liberty' and row['registered']}
     run, = (row for row in rows('runs.csv') if row['file'] == 'photographs.csv, liberty')
 
-    def told(method):
-        largest, others = int(statue[method]['registered'].split()[0]), [int(n) for n in statue[method]['others'].split()]
+    def joined(row):
+        largest, *others = (int(n) for n in (row['registered'].split()[0] + ' ' + row['others']).split())
         return '%d in %d parts, %d in the largest' % (largest + sum(others), 1 + len(others), largest) if others else '%d in one' % largest
     near = {line[0]: line[1:] for line in located_photographs()}
-    chain, sift = near['recommended chain'], near['SIFT, normalized image']
-    return ('Of photographs:\n'
-            '- *One statue*, %s photographs from noon to sunset; true poses are unknown, so this counts images alone: COLMAP joins %s reconstruction with the chain\'s points,\n'
-            "  with SIFT's %s, with SIFT's on normalized images %s, by the code of %s ([how](doc/colmap.md#a-comparison)).\n"
-            '- *Maps of five scenes* in one light: [`Localizer`](doc/maps.md#what-was-measured) places %s photographs within 5 cm and 0.5°, a program with SIFT on\n'
-            '  normalized images, without our refinement, %s: level. Of photographs that a program has darkened and shaded it is %s and %s.\n'
-            '  Rules of matching were settled with three of the five scenes.' % (
-                statue['chain']['registered'].split()[-1], told('chain'), told('SIFT'), told('normalized'), run['date'], chain[0], sift[0], chain[1], sift[1]))
+    figures = {'images': statue['chain']['registered'].split()[-1], 'date': run['date'], **{name.lower(): joined(statue[name]) for name in ('chain', 'SIFT', 'normalized')}}
+    for name, method in (('chain', 'recommended chain'), ('sift', 'SIFT, normalized image')):
+        figures.update({name + '_located': near[method][0], name + '_relit': near[method][1]})
+    points = {(row['scene'], row['method']): int(row['points']) for row in found if row['points']}
+    for method in ('chain', 'SIFT', 'normalized'):
+        kept = [round(100 * count / points[scene[:-len(' relit')], name]) for (scene, name), count in points.items() if name == method and scene.endswith(' relit')]
+        errors = [row['reprojection'] for row in found if row['method'] == method and row['scene'] != 'liberty']
+        figures.update({method.lower() + '_kept': '%d to %d' % (min(kept), max(kept)), method.lower() + '_errors': '%s to %s' % (min(errors), max(errors))})
+    return figures
 
 
 def view_rows(place):
@@ -376,57 +322,28 @@ def views():
     return by_change('photographs', ('matchViews', 'upright chain', 'ORB', 'SIFT'))
 
 
-def views_chosen_on():
-    return by_change('chosen on', ('matchViews', 'upright chain', 'ORB', 'SIFT'))
-
-
 def views_affine():
     return by_change('some photographs', ('matchViews', 'AffineFeature'))
 
 
-def views_run():
-    """What was matched, where, and what was made of unrelated images."""
-    found, apart = view_rows('photographs'), view_rows('unrelated')
-    one, sift = apart['unrelated', '', 'matchViews'], apart['unrelated', '', 'SIFT']
+def view_figures():
+    """Right matches and milliseconds in views of photographs; of unrelated images; of which run."""
+    found, some, apart = view_rows('photographs'), view_rows('some photographs'), view_rows('unrelated')
     run, = (row for row in rows('runs.csv') if row['file'] == 'views.csv')
     changed = [row for place in ('photographs', 'chosen on') for key, row in view_rows(place).items() if key[2] == 'matchViews']
-    return ('%s photographs of scenes that nothing was chosen on, at %s on %s (%s).\nOf %s pairs of images of different sets `matchViews` calls %.0f significant, '
-            'in %.0f ms on average. Detection, description and matching by SIFT\ntake %.0f ms of the same pairs.\nOf the %d pairs of the first two tables it calls %.0f significant; in %.0f of these most matches are wrong.' % (
-                found['zoom', '1', 'SIFT']['pairs'], run['commit'].replace(';', ' and '), run['date'], run['machine'], one['pairs'], float(one['found']) * int(one['pairs']),
-                float(one['milliseconds']), float(sift['milliseconds']), sum(int(row['pairs']) for row in changed),
-                *(sum(float(row[name]) * int(row['pairs']) for row in changed) for name in ('found', 'misled'))))
-
-
-def views_guide():
-    """The guide's sentences on matchViews: what it does, what it costs, its limits."""
-    found, few, apart = view_rows('photographs'), view_rows('some photographs'), view_rows('unrelated')
-
-    def right(kind, amount, method='matchViews'):
-        return '%.0f' % float(found[kind, amount, method]['right'])
-
-    def times(rows, method):
-        every = [float(row['milliseconds']) for key, row in rows.items() if key[2] == method and key[:2] != ('zoom', '1')]
-        return '%.0f to %.0f' % (min(every), max(every))
-    return ('`matchViews` matches two images as they are and, if these matches are not decisive, in reduced, rotated and tilted views of both.\n'
-            'Of %s photographs, the second image made by a program (warped, and darkened), it finds %s right matches on average at a quarter of the size\n'
-            '(the upright chain %s, SIFT %s), and %s at a tilt of 4 (%s and %s). It takes %.0f ms of one thread for an ordinary pair, images to matches, where the\n'
-            'chain takes %.0f; a search takes %s ms (SIFT %s; `cv::AffineFeature` with SIFT, which finds more matches of many more points,\n'
-            '%s), and %.0f ms where the images have nothing in common (SIFT %.0f). All rotations are searched, relative sizes from a quarter to four\n'
-            'times, and tilts up to 4 (`maxTilt`); the second image at twice the size leaves %s matches. Mirrored images are not searched for, and of a scene with strong\n'
-            'perspective perhaps one part alone\n'
-            '([all figures and conditions](results/README.md#other-zoom-rotation-and-tilt)).' % (
-                found['zoom', '1', 'SIFT']['pairs'], *(right('zoom', '0.25', method) for method in ('matchViews', 'upright chain', 'SIFT')),
-                *(right('tilt', '4', method) for method in ('matchViews', 'upright chain', 'SIFT')),
-                *(float(found['zoom', '1', method]['milliseconds']) for method in ('matchViews', 'upright chain')), times(found, 'matchViews'), times(found, 'SIFT'),
-                times(few, 'AffineFeature'), *(float(apart['unrelated', '', method]['milliseconds']) for method in ('matchViews', 'SIFT')), right('zoom', '2')))
-
-
-def propagation():
-    """The guide's sentence on what propagated matches bring the recommended chain."""
-    found = estimates()
-    before, after = (found[CHAIN, 'other light', points, 'findRelativePose'] for points in ('refined', 'propagated'))
-    return ('In other light the score of poses by 1000 points goes from %.2f with refined matches to %.2f with propagated ones\n'
-            '([means of %s pairs](results/README.md#poses)).' % (float(before['at_5']), float(after['at_5']), after['pairs']))
+    one = apart['unrelated', '', 'matchViews']
+    figures = {**run, 'commit': run['commit'].replace(';', ' and '), 'pairs': found['zoom', '1', 'SIFT']['pairs'], 'unrelated': one['pairs'],
+               'unrelated_found': '%.0f' % (float(one['found']) * int(one['pairs'])), 'changed': str(sum(int(row['pairs']) for row in changed)),
+               **{'changed_' + name: '%.0f' % sum(float(row[name]) * int(row['pairs']) for row in changed) for name in ('found', 'misled')}}
+    for name, method in (('ours', 'matchViews'), ('chain', 'upright chain'), ('sift', 'SIFT'), ('affine', 'AffineFeature')):
+        of = some if name == 'affine' else found
+        every = [float(row['milliseconds']) for key, row in of.items() if key[2] == method and key[:2] != ('zoom', '1')]
+        figures[name + '_ms'] = '%.0f to %.0f' % (min(every), max(every))
+        figures[name + '_plain_ms'] = '%.0f' % float(of['zoom', '1', method]['milliseconds'])
+        figures.update({'%s_%s' % (name, label): '%.0f' % float(of[kind, amount, method]['right'])
+                        for label, kind, amount in (('quarter', 'zoom', '0.25'), ('tilt', 'tilt', '4'), ('twice', 'zoom', '2'))})
+        figures.update({name + '_apart_ms': '%.0f' % float(row['milliseconds']) for key, row in apart.items() if key[2] == method})
+    return figures
 
 
 def presets():
@@ -456,19 +373,10 @@ def inside(level, quantity):
     return '%.0f to %.0f' % (min(shares), max(shares))
 
 
-def sure_claim():
-    """The README's sentence on uncertainties."""
-    return ('- Uncertainties are no guarantee. Told 95 %% bounds held for %s of 100 relative poses, by kind of data, and for %s of 100 single points,\n'
-            '  wrong matches among them, and %s of 100 corners of `alignImages` ([how sure](doc/uncertainty.md)).' % tuple(
-                inside('0.95', what) for what in ('findRelativePose', 'refineMatches', 'alignImages')))
-
-
-def how_sure():
-    """What the table of uncertainties comes to."""
-    return ('In short, of 100 errors, by kind of data: of relative poses %s are inside what is told for 50 %%, %s inside what is told for 95 %% and\n'
-            '%s inside what is told for 99 %%; of `Localizer` %s, %s and %s. So what is told for 50 %% is rather too much, and what is told for 99 %%\n'
-            'too little: a few poses are wrong by more than they say.' % tuple(
-                inside(level, what) for what in ('findRelativePose', 'Localizer') for level in ('0.5', '0.95', '0.99')))
+def sure_figures():
+    """The least and the most of a hundred errors, by kind of data, that are inside what is estimated for a level."""
+    return {'%s_%s' % (name, level[2:]): inside(level, what) for name, what in (
+        ('pose', 'findRelativePose'), ('localizer', 'Localizer'), ('point', 'refineMatches'), ('corner', 'alignImages')) for level in ('0.5', '0.95', '0.99')}
 
 
 def uncertainty():
@@ -478,80 +386,29 @@ def uncertainty():
                    *('%.0f' % (100 * float(row[level])) if row[level] else '–' for level in ('0.5', '0.95', '0.99'))] for row in rows('uncertainty.csv')])
 
 
-def scale():
-    """What scripts/helpers/scale.sh wrote."""
-    return json.loads((RESULTS / 'scale.json').read_text())
-
-
-def by_two(one, two):
-    """How many times as fast two threads are; more than twice is noise, but for what a median is unsure of."""
-    if one > 2.1 * two:
-        sys.exit('scale.json: two threads are %.2f times as fast as one: measure again' % (one / two))
-    return '%.1f' % (one / two)
-
-
-def scale_run():
-    """When and where that was, and at which sizes of codes a second thread brought IIB little."""
-    data = scale()
-    found = {(r['bytes'], r['k'], r['threads']): r for r in data['flat']['rows']}
-    slow = sorted({key[0] for key, row in found.items() if key[2] == 1 and row['iib_ns'] < 1.5 * found[key[0], key[1], 2]['iib_ns']})
-    run = summaries.by(rows('runs.csv'), 'file')['scale.json']
-    text = 'Of %s, commit %s: %s. Searches take turns, and their medians of %d calls count.' % (data['date'], run['commit'], data['machine'], data['rounds'])
-    return text + ' At %s bytes the second thread\nbrought little in that run: those rows are to be measured again.' % ' and '.join(map(str, slow)) if slow else text
-
-
-def flat_search():
-    """Exact search beside faiss's flat index on one thread, and what a second thread brings."""
-    data, lines = scale(), []
-    found = {(r['bytes'], r['k'], r['threads']): r for r in data['flat']['rows']}
-    for width, k in sorted({key[:2] for key in found}):
-        one, two = found[width, k, 1], found[width, k, 2]
-        lines.append([str(width), str(k), '%.1f' % (one['faiss_ns'] / one['iib_ns']), by_two(one['iib_ns'], two['iib_ns'])])
-    return table(['bytes', 'k', 'times as fast as faiss ' + data['faiss'], 'times as fast by two threads'], lines)
-
-
-def mapped_index():
-    """A MappedIndex opened in a fresh process, and searched by a worker of Dask."""
-    data = scale()
-    index, workers = data['mapped'], data['workers']
-    return table(['%s codes of %d bytes' % (format(index['codes'], ','), index['bytes']), ''], [
-        ['written and on the disk, s', '%.0f' % index['write_seconds']],
-        ['opened, ms', '%.1f' % index['open_ms']],
-        ['resident after that, MB', '%.1f' % index['open_resident_mb']],
-        ['first query, which maps and checks all, ms', '%.0f' % index['first_search_ms']],
-        ['the next, ms', '%.0f' % index['second_search_ms']],
-        ['%d queries, k = 5, one worker of one thread, s' % workers['queries'], '%.1f' % workers['one_worker_seconds']]])
-
-
 def photographs(known=True):
     """Reconstructions of scenes with known poses, and what they keep in other light; or of one without."""
     found = [row for row in rows('photographs.csv') if (row['scene'] != 'liberty') == known]
     columns = [name for name in found[0] if name != 'others' or not known]
     heads = {'others': 'images of other components', 'centres': 'centres, %', 'close': 'within 5 % and 5 degrees'}
-    lines = table([heads.get(name, name) for name in columns], [[row[name] for name in columns] for row in found])
-    if not known:
-        return lines
-    kept, errors = {}, {}
-    points = {(row['scene'], row['method']): int(row['points']) for row in found}
-    for row in found:
-        errors.setdefault(row['method'], []).append(row['reprojection'])
-        if row['scene'].endswith(' relit'):
-            kept.setdefault(row['method'], []).append(round(100 * points[row['scene'], row['method']] /
-                                                            points[row['scene'][:-len(' relit')], row['method']]))
-    return '%s\n\nRelit, the chain keeps %d to %d of 100 of its points, SIFT %d to %d, normalized SIFT %d to %d. ' \
-        'SIFT\'s points lie more exactly: reprojection errors\nof %s to %s pixels, the chain\'s %s to %s.' % (
-            lines, *(end(kept[method]) for method in ('chain', 'SIFT', 'normalized') for end in (min, max)),
-            *(end(errors[method]) for method in ('SIFT', 'chain') for end in (min, max)))
+    return table([heads.get(name, name) for name in columns], [[row[name] for name in columns] for row in found])
 
 
 def photographs_of_many():
     return photographs(False)
 
 
+def night():
+    """The steps of the last night before a release."""
+    return table(['step', 'counted', 'minutes', 'commit', 'started (UTC)', 'result'],
+                 [['`%s`' % row['step'], *(row[key] for key in ('counted', 'minutes', 'commit', 'started', 'result'))] for row in rows('night.csv')])
+
+
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
-    drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, views, views_chosen_on, views_affine, views_run, views_guide, how_sure, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
-    step_by_step, fuzzing, mapped_index, scale_run, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, classic_detectors, learned_claim, learned_limit, estimator_limit, learned_guide, pose_pairs,
-    detected_points, uncertainty, night, artifacts)}
+    drop_in, poses, presets, views, views_affine, photographs, photographs_of_many, describing, chains, same_points, matching, step_by_step,
+    matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time,
+    detected_points, uncertainty, night)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
+FIGURES = {'learned': learned_figures, 'poses': pose_figures, 'photographs': photograph_figures, 'views': view_figures, 'sure': sure_figures, 'speed': speed_figures}

@@ -143,15 +143,13 @@ def step_by_step():
     return table(['', *sets()], [[label, *shown(form, row)] for label, form, row in steps() if not row.isna().all()])
 
 
-def speed_claim():
-    """The README's sentences on time: with AVX2, in ratios."""
-    chain, orb, sift = (ms(test, 'street_noon', name, 1000)['AVX2'] for test, name in (
-        ('IIB_Chain_vga', 'recommended chain'), ('IIB_Chain_vga', 'ORB'), ('IIB_Chain_others', 'SIFT')))
-    described = ms('IIB_Describe_hd', 'default', 1000)['AVX2'] / ms('IIB_Describe_hd', 'ORB', 1000)['AVX2']
-    return ("**Time**, one thread with AVX2: the default describes 1000 points in %.2f of ORB's time; the matcher, whose answers are those of `cv::BFMatcher`,\n"
-            'is %.1f times as fast on 1000 codes of 170 bytes a side, with cross-check %.1f times. The recommended chain, below, finds and describes 1000 points of a rendered\n'
-            "street of 640 x 480 in %.1f ms, ORB in %.1f, SIFT in %.0f ([all times](doc/performance.md); `opencv_perf_iib` measures yours)." % (
-                described, faster('EXACT', 'false', 1000)['AVX2'], faster('EXACT', 'true', 1000)['AVX2'], chain, orb, sift))
+def speed_figures():
+    """With AVX2: describing over ORB, how many times as fast as BFMatcher matching is, milliseconds to find and describe; and the machine."""
+    figures = {name: '%.1f' % ms(test, 'street_noon', method, 1000)['AVX2'] for name, test, method in (
+        ('chain_ms', 'IIB_Chain_vga', 'recommended chain'), ('orb_ms', 'IIB_Chain_vga', 'ORB'))}
+    return {**figures, 'sift_ms': '%.0f' % ms('IIB_Chain_others', 'street_noon', 'SIFT', 1000)['AVX2'], 'machine': machine(),
+            'described': '%.2f' % (ms('IIB_Describe_hd', 'default', 1000)['AVX2'] / ms('IIB_Describe_hd', 'ORB', 1000)['AVX2']),
+            'matched': '%.1f' % faster('EXACT', 'false', 1000)['AVX2'], 'mutual': '%.1f' % faster('EXACT', 'true', 1000)['AVX2']}
 
 
 if __name__ == '__main__':

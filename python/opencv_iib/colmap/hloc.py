@@ -8,7 +8,7 @@ import sqlite3
 
 import numpy as np
 
-from opencv_iib._arguments import InvalidOption, MissingFile, Path
+from opencv_iib._arguments import MissingFile, Path
 from opencv_iib._files import check_outputs, output_file, replaced
 from opencv_iib._hdf5 import new_hdf5
 from opencv_iib._images import is_listable
@@ -74,8 +74,6 @@ def export(database: Path, features: Path, matches: Path, pairs: Path, force: bo
     Files that are there are replaced when all three are complete.
     """
     paths = [output_file(os.fspath(path)) for path in (features, matches, pairs)]
-    if len(set(paths)) < 3:
-        raise InvalidOption('features, matches and pairs are three files: give each a name of its own')
     check_outputs(paths, [database])
     for path in paths:
         if os.path.exists(path) and not force:

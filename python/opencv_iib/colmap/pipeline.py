@@ -12,12 +12,13 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import _pairs as pair_lists
-from opencv_iib._arguments import InvalidOption, Path, integer, number, sequence
+from opencv_iib._arguments import InvalidOption, Path, check_choice, check_count, number, sequence
 from opencv_iib._camera import Camera
-from opencv_iib._exif import exif_focal_length, gps_place, orientation_of_photograph
-from opencv_iib._files import check_is_folder, check_outputs, only_writer, output_file, read_bytes
-from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, is_listable, is_utf8
-from opencv_iib._parallel import Cluster, Crew, Threads, in_parallel, thread_count
+from opencv_iib._exif import exif_focal_length, gps_place
+from opencv_iib._files import check_is_folder, check_outputs, only_writer, output_file
+from opencv_iib._image_file import ImageFile, Masks, check_sizes
+from opencv_iib._images import find_images, import_cv2, is_listable, is_utf8
+from opencv_iib._parallel import Cluster, Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib._two_views import magsac
@@ -75,8 +76,7 @@ class Options:
         self.features.check()
         if not 0 <= number(self.focal, 'focal') < float('inf'):
             raise InvalidOption(f'focal is {self.focal}: it must be a number of pixels, or 0')
-        if self.camera_model not in CAMERA_MODELS:
-            raise InvalidOption(f'no camera model {self.camera_model}: there are {", ".join(CAMERA_MODELS)}')
+        check_choice(self.camera_model, 'camera model', CAMERA_MODELS)
         for text in sequence(self.camera_of, 'camera_of', "'FOLDER=MODEL,WIDTH,HEIGHT,PARAMS'"):
             if '=' not in str(text):
                 raise InvalidOption(f'camera_of is {text}: it must be FOLDER=MODEL,WIDTH,HEIGHT,PARAMS')
@@ -91,12 +91,10 @@ class Options:
                 raise InvalidOption(str(e)) from None
         if self.pairs not in PAIRS and not os.path.isfile(self.pairs):
             raise InvalidOption(f'pairs: {self.pairs} is neither a file nor one of {", ".join(PAIRS)}')
-        if self.verify not in VERIFIERS:
-            raise InvalidOption(f'verify is {self.verify}: it must be one of {", ".join(VERIFIERS)}')
+        check_choice(self.verify, 'verify', VERIFIERS)
         if self.verify == 'colmap' and colmap_binary() is None:
             raise InvalidOption('verify is colmap, but there is no program colmap: install it, or take magsac')
-        if integer(self.neighbours, 'neighbours', 64) < 1:
-            raise InvalidOption(f'neighbours is {self.neighbours}: it must be at least 1')
+        check_count(self.neighbours, 'neighbours')
         if not 0 < number(self.ratio, 'ratio') <= 1:
             raise InvalidOption(f'ratio is {self.ratio}: it must be in (0, 1]')
         import_cv2()
@@ -116,23 +114,21 @@ def describe_image(folder: str, options: Options, name: str
                                 'by the same name')
     if not is_utf8(name):
         raise ValueError('its name is not UTF-8')
-    data = read_bytes(os.path.join(folder, name))
-    image = decode_grey(data)
-    rows, codes = _features(options.features)(image, orientation_of_photograph(data, options.features.exif),
-                                              Masks(options.features.mask).of(name, image))
-    height, width = image.shape
+    file = ImageFile(os.path.join(folder, name), options.features.exif)
+    rows, codes = _features(options.features)(file.grey, file.orientation_of_camera, Masks(options.features.mask).of(name, file.grey))
+    height, width = file.grey.shape
     camera = options.camera_for(name)
     if camera is not None and (camera.width, camera.height) != (width, height):
         raise ValueError(f'it has {width} x {height} pixels, its camera {camera.width} x {camera.height}')
     if camera is not None:
         return to_colmap(rows), codes, width, height, camera.model, camera.params, True
-    focal = options.focal or exif_focal_length(data, width, height)
+    focal = options.focal or exif_focal_length(file.data, width, height)
     focals, others = CAMERA_MODELS[options.camera_model]
     params = [focal or 1.2 * max(width, height)] * focals + [width / 2, height / 2] + [0] * others
     return to_colmap(rows), codes, width, height, options.camera_model, params, bool(focal)
 
 
-def describe_images(database: Database, folder: str, names: Sequence[str], options: Options, crew: Crew,
+def describe_images(database: Database, folder: str, names: Sequence[str], options: Options, crew: Threads,
                     log: Callable[[str], None]) -> int:
     """Describes the images that the database does not know or that were changed, and removes those that are gone or broken.
 
@@ -150,7 +146,7 @@ def describe_images(database: Database, folder: str, names: Sequence[str], optio
     failed = 0
     progress = Progress('describing', len(stamps), len(stamps) - len(missing))
     describe = functools.partial(describe_image, os.path.abspath(folder), options)
-    for name, result in in_parallel(describe, missing, crew):
+    for name, result in in_parallel(describe, missing, crew, (Exception,)):
         if isinstance(result, (FileNotFoundError, ImportError)):
             raise result  # not the image is at fault, but where it is worked on
         if isinstance(result, Exception):
@@ -168,7 +164,7 @@ def describe_images(database: Database, folder: str, names: Sequence[str], optio
     return failed
 
 
-def describe_again(database: Database, folder: str, names: Sequence[str], options: Options, level_sizes: tuple[int, ...], crew: Crew) -> None:
+def describe_again(database: Database, folder: str, names: Sequence[str], options: Options, level_sizes: tuple[int, ...], crew: Threads) -> None:
     """Gives the images of a finished database their codes again, if they are of a pair that it does not hold."""
     without = database.without_codes()
     if not without:
@@ -180,8 +176,6 @@ def describe_again(database: Database, folder: str, names: Sequence[str], option
     missing = [name for name, image in without.items() if image in needed]
     progress = Progress('describing again', len(missing))
     for name, result in in_parallel(functools.partial(describe_image, os.path.abspath(folder), options), missing, crew):
-        if isinstance(result, Exception):
-            raise result
         if not database.add_codes(without[name], *result[:2]):
             raise ValueError(f'{name} has other points than when the database was made, by another version of OpenCV perhaps: begin anew with '
                              'force (--force)')
@@ -236,7 +230,7 @@ def match_tile(level_sizes: tuple[int, ...], ratio: float, verify: str,
 
 
 def match_pairs(database: Database, listed: tuple[Iterable[tuple[int, int]], Optional[int]], ratio: float,
-                level_sizes: tuple[int, ...], verify: str, crew: Crew) -> None:
+                level_sizes: tuple[int, ...], verify: str, crew: Threads) -> None:
     """Matches, and with magsac verifies, the pairs that the database does not hold.
 
     :param listed: pairs of image ids, each once, and how many there are if that is known.
@@ -259,8 +253,6 @@ def match_pairs(database: Database, listed: tuple[Iterable[tuple[int, int]], Opt
 
     match = functools.partial(match_tile, level_sizes, ratio, verify)
     for (tile, _), results in in_parallel(match, jobs(), crew):
-        if isinstance(results, Exception):
-            raise results
         for pair, result in zip(tile, results):
             database.add_pair(*pair, *result)
             progress.step()

@@ -12,16 +12,16 @@ from typing import Iterable, NamedTuple, Optional
 
 import numpy as np
 
-from opencv_iib._files import read_bytes
-from opencv_iib._images import Masks, decode_grey
-from opencv_iib._parallel import Crew, in_parallel
+from opencv_iib._image_file import ImageFile, Masks
+from opencv_iib._images import reduced, resized_mask
+from opencv_iib._parallel import Threads, in_parallel
 from opencv_iib._progress import Progress
 from opencv_iib._two_views import MIN_INLIERS, magsac
 from opencv_iib.colmap.database import Database
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import detect_rows
 from opencv_iib.enums import Orientation
-from opencv_iib.features import FeatureOptions, reduced, resized_mask
+from opencv_iib.features import FeatureOptions
 from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.views import matchViews
 
@@ -46,10 +46,8 @@ class Found(NamedTuple):
 
 
 def _read(folder: str, options: FeatureOptions, name: str) -> tuple[np.ndarray, Optional[np.ndarray], np.ndarray]:
-    """An image, reduced as for its features, its mask, and pixels of the file a pixel, along x and y."""
-    image = decode_grey(read_bytes(os.path.join(folder, name)))
-    mask, small = Masks(options.mask).of(name, image), reduced(image, options.max_size)
-    return small, None if mask is None else resized_mask(mask, small), np.array(image.shape[1::-1]) / small.shape[1::-1]
+    """As ImageFile.small, reduced as for its features."""
+    return ImageFile(os.path.join(folder, name)).small(options.max_size, Masks(options.mask), name)
 
 
 def describe_views(folder: str, options: FeatureOptions, job: tuple[str, bool]) -> list[np.ndarray]:
@@ -61,7 +59,7 @@ def describe_views(folder: str, options: FeatureOptions, job: tuple[str, bool]) 
     codes = []
     for scale in SCALES if in_all else SCALES[:1]:
         view = reduced(image, round(scale * min(VOTING_SIZE, max(image.shape))))
-        rows = detect_rows(extractor, view, None if mask is None else resized_mask(mask, view))
+        rows = detect_rows(extractor, view, resized_mask(mask, view))
         for angle in ANGLES if in_all else ANGLES[:1]:
             rows[:, 3] = angle
             codes.append(extractor.compute(view, rows)[1])
@@ -94,7 +92,7 @@ def groups(images: Iterable[int], pairs: Iterable[Pair]) -> dict[int, int]:
     return {image: top(image) for image in above}
 
 
-def candidates(folder: str, options: FeatureOptions, names: dict[int, str], group: dict[int, int], crew: Crew) -> list[Pair]:
+def candidates(folder: str, options: FeatureOptions, names: dict[int, str], group: dict[int, int], crew: Threads) -> list[Pair]:
     """Pairs of images of different groups, first those for which most codes of one view of an image vote."""
     sizes = IIBDescriptorExtractor.createRecommended().levelSizes()
     progress = Progress('comparing views', 2 * len(names))
@@ -112,8 +110,6 @@ def candidates(folder: str, options: FeatureOptions, names: dict[int, str], grou
         jobs = ((names[image], in_all) for image in images)
         for image, (_, views) in zip(images, in_parallel(functools.partial(describe_views, folder, options), jobs, crew)):
             progress.step()
-            if isinstance(views, Exception):
-                raise views
             if not in_all:
                 upright[image] = views[0]
                 continue
@@ -158,7 +154,7 @@ def add_found(database: Database, pair: Pair, found: Found) -> bool:
     return True
 
 
-def search_pairs(database: Database, folder: str, options: FeatureOptions, any_pair: bool, crew: Crew) -> None:
+def search_pairs(database: Database, folder: str, options: FeatureOptions, any_pair: bool, crew: Threads) -> None:
     """Searches pairs of images that no verified pairs connect, and writes what is found.
 
     An interrupted run goes on with the pair where it ended.
@@ -193,8 +189,6 @@ def search_pairs(database: Database, folder: str, options: FeatureOptions, any_p
         new = [pair for pair in chosen if database.was_found(*pair) is None]
         jobs = ((names[a], names[b]) for a, b in new)
         for pair, (_, found) in zip(new, in_parallel(functools.partial(search_pair, folder, options), jobs, crew)):
-            if isinstance(found, Exception):
-                raise found
             if found is None or not add_found(database, pair, found):
                 database.add_not_found(*pair)
             progress.step()

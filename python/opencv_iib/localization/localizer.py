@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, Literal, Optional, Union
+from typing import Any, Optional
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,8 +32,8 @@ class Location(_core.Location):
                          as_rows_of(points, 3, 'points'))
 
     @staticmethod
-    def _of(core: _core.Location) -> Union[FoundLocation, NoLocation]:
-        made: Union[FoundLocation, NoLocation] = FoundLocation.__new__(FoundLocation) if core.found else NoLocation.__new__(NoLocation)
+    def _of(core: _core.Location) -> Location:
+        made = Location.__new__(Location)
         _core.Location.__init__(made, core)
         return made
 
@@ -53,30 +53,6 @@ class Location(_core.Location):
             return f'Location(reason={self.reason!r})'
         place = -self.cam_from_world[:3, :3].T @ self.cam_from_world[:3, 3]
         return f'Location(centre {place.round(3).tolist()}, {self.inliers} of {self.matches} matches agree)'
-
-
-class FoundLocation(Location):
-    """A Location with a pose, as type checkers know it where `found` was asked for."""
-
-    if TYPE_CHECKING:
-        @property
-        def found(self) -> Literal[True]: ...
-        @property
-        def cam_from_world(self) -> NDArray[np.float64]: ...
-        @property
-        def covariance(self) -> NDArray[np.float64]: ...
-
-
-class NoLocation(Location):
-    """One without."""
-
-    if TYPE_CHECKING:
-        @property
-        def found(self) -> Literal[False]: ...
-        @property
-        def cam_from_world(self) -> None: ...
-        @property
-        def covariance(self) -> None: ...
 
 
 def as_pose(pose: ArrayLike) -> NDArray[np.float64]:
@@ -109,7 +85,7 @@ class Localizer:
         return [Camera._of(camera) for camera in self._core.cameras()]
 
     def localize(self, image: ArrayLike, camera: AnyCamera, prior: Optional[ArrayLike] = None, orientation: int = 1,
-                 mask: Optional[ArrayLike] = None) -> Union[FoundLocation, NoLocation]:
+                 mask: Optional[ArrayLike] = None) -> Location:
         """Where an image was taken. The GIL is released meanwhile.
 
         :param image: H x W or H x W x 3 (BGR) uint8, as its file stores it, not turned as EXIF may ask; so are pose and pixels.

@@ -10,16 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import _core
-from opencv_iib._arguments import InvalidOption, Path, integer
+from opencv_iib._arguments import InvalidOption, Path, check_count
 from opencv_iib._arrays import as_mask
-from opencv_iib._exif import orientation_of_photograph
-from opencv_iib._files import OF_FILE_MANAGERS, check_folder, check_is_folder, read_bytes
-from opencv_iib._images import Masks, decode_grey, in_order
+from opencv_iib._camera import AnyCamera, Camera
+from opencv_iib._files import check_folder, check_is_folder
+from opencv_iib._image_file import ImageFile, Masks
+from opencv_iib._images import in_order
 from opencv_iib._parallel import thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
-from opencv_iib.features import MAX_POINTS, check_max_size
-from opencv_iib.localization.localizer import AnyCamera, Camera, Location
+from opencv_iib.features import check_max_size
+from opencv_iib.localization.localizer import Location
 from opencv_iib.localization.run import images_of, locate
 
 
@@ -35,7 +36,7 @@ def _count(file: str) -> int:
 
 def _check_new(out: Path, force: bool) -> None:
     check_folder(out)
-    if os.path.isdir(out) and not OF_FILE_MANAGERS.issuperset(os.listdir(out)) and not force:
+    if os.path.exists(os.path.join(out, 'map.iib')) and not force:
         raise FileExistsError(f'{out} is there already: choose another folder, or pass force (--force) to replace a map')
 
 
@@ -62,8 +63,7 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     :raises FileNotFoundError: for a folder that is not there.
     :raises opencv_iib.error: for a model that is damaged or not that of the images, and for a folder that holds other files.
     """
-    if not 1 <= integer(points, 'points', 64) <= MAX_POINTS:
-        raise InvalidOption(f'points is {points}: it must be 1 to {MAX_POINTS}')
+    check_count(points, 'points')
     check_max_size(max_size)
     threads, used = _core.getNumThreads(), thread_count(workers)
     target = os.path.realpath(out)
@@ -83,9 +83,8 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
         if stop.is_set():
             raise KeyboardInterrupt
         try:
-            data = read_bytes(os.path.join(images, os.fsdecode(name)))
-            image = decode_grey(data)
-            found = image, orientation_of_photograph(data, exif), as_mask(masks.of(os.fsdecode(name), image))
+            file = ImageFile(os.path.join(images, os.fsdecode(name)), exif)
+            found = file.grey, file.orientation_of_camera, as_mask(masks.of(os.fsdecode(name), file.grey))
             read_any = True
             return found
         except (ValueError, OSError) as e:

@@ -15,16 +15,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core, error
 from opencv_iib._arguments import InvalidOption, Path
-from opencv_iib._exif import exif_focal_length, orientation_of_photograph
-from opencv_iib._files import check_folder, check_is_folder, check_outputs, new_results, read_bytes, write_whole
-from opencv_iib._images import Masks, check_sizes, decode_grey, find_images, import_cv2, is_utf8, read_grey, write_picture
+from opencv_iib._camera import AnyCamera, Camera, as_camera
+from opencv_iib._exif import exif_focal_length
+from opencv_iib._files import Results, check_folder, check_is_folder, check_outputs, write_whole
+from opencv_iib._image_file import ImageFile, Masks, check_sizes
+from opencv_iib._images import find_images, import_cv2, is_utf8, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import is_open_file, note
 from opencv_iib._upright import BACK
-from opencv_iib.features import check_max_size, reduced, resized_mask
+from opencv_iib.features import check_max_size
 from opencv_iib.localization.imu_file import by_time, read_imu
-from opencv_iib.localization.localizer import AnyCamera, Camera, Localizer, Location, as_camera
+from opencv_iib.localization.localizer import Localizer, Location
 from opencv_iib.localization.smoothing import smooth_poses
 
 SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly, and COLMAP of a camera an image
@@ -76,15 +78,14 @@ def _common_camera(cameras: tuple[Camera, ...]) -> Optional[Camera]:
 def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], exif: bool, masks: Masks, max_size: int, name: str
             ) -> tuple[Camera, Location]:
     """An image's camera, and what `find` finds in it, reduced to this longer side if it is larger; pixels are its own."""
-    data = read_bytes(os.path.join(folder, name))
-    grey, orientation = decode_grey(data), orientation_of_photograph(data, exif)
-    own = camera or find_camera(data, grey.shape[1], grey.shape[0], known, orientation)
-    mask, small = masks.of(name if folder else os.path.basename(name), grey), reduced(grey, max_size)
-    if small is grey:
-        return own, find(name, grey, own, orientation, mask)
-    size = np.array(small.shape[1::-1])
-    found = find(name, small, own.resized(*size), orientation, None if mask is None else resized_mask(mask, small))
-    pixels = (found.pixels + .5) * (np.array(grey.shape[1::-1]) / size) - .5  # the centre of the first one is 0
+    file = ImageFile(os.path.join(folder, name), exif)
+    small, mask, scale = file.small(max_size, masks, name if folder else os.path.basename(name))
+    orientation = file.orientation_of_camera
+    own = camera or find_camera(file.data, file.grey.shape[1], file.grey.shape[0], known, orientation)
+    if small is file.grey:
+        return own, find(name, small, own, orientation, mask)
+    found = find(name, small, own.resized(*small.shape[::-1]), orientation, mask)
+    pixels = (found.pixels + .5) * scale - .5  # the centre of the first one is 0
     return own, Location(found.cam_from_world, found.covariance, found.reason, found.matches, found.inliers, pixels, found.points)
 
 
@@ -121,9 +122,7 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
         check_name(name)
         return _locate(find, cameras, folder, given, exif, masks, max_size, name)
 
-    for name, result in in_parallel(job, names, Threads(thread_count(workers))):
-        if isinstance(result, Exception) and not isinstance(result, (ValueError, OSError, error)):
-            raise result
+    for name, result in in_parallel(job, names, Threads(thread_count(workers)), (ValueError, OSError, error)):
         own, location = (None, str(result)) if isinstance(result, Exception) else result
         if given is None and own is not None:
             report_camera(own)
@@ -160,27 +159,22 @@ def labels_of(names: Sequence[str]) -> dict[str, str]:
 
 def _write_picture(path: str, image: str, camera: Camera, location: Location) -> None:
     cv2 = import_cv2()
-    picture = cv2.cvtColor(read_grey(image), cv2.COLOR_GRAY2BGR)
+    picture = cv2.cvtColor(ImageFile(image).grey, cv2.COLOR_GRAY2BGR)
     pose = np.asarray(location.cam_from_world)
     for seen, mapped in zip(location.pixels, camera.project(location.points @ pose[:3, :3].T + pose[:3, 3])):
         begin, end = ([round(8 * v) for v in place] for place in (seen, mapped))  # eighths of pixels, see shift
         cv2.line(picture, begin, end, (0, 0, 255), 1, cv2.LINE_AA, 3)
         cv2.circle(picture, begin, 3 * 8, (0, 200, 0), 1, cv2.LINE_AA, 3)
-    os.makedirs(os.path.dirname(path), exist_ok=True)
     write_picture(path, picture)
 
 
-def _place_and_turn(cam_from_world: NDArray[np.float64]) -> list[float]:
+def _numbers(cam_from_world: NDArray[np.float64]) -> list[str]:
     """The camera's centre, and the quaternion x y z w from the camera to the world."""
     turn = cam_from_world[:3, :3].T
     vector = import_cv2().Rodrigues(turn)[0].ravel()
     half = np.linalg.norm(vector) / 2
     place = -turn @ cam_from_world[:3, 3]
-    return [*place.tolist(), *(vector * np.sinc(half / np.pi) / 2).tolist(), float(np.cos(half))]
-
-
-def _numbers(cam_from_world: NDArray[np.float64]) -> list[str]:
-    return [repr(value) for value in _place_and_turn(cam_from_world)]
+    return [repr(value) for value in (*place.tolist(), *(vector * np.sinc(half / np.pi) / 2).tolist(), float(np.cos(half)))]
 
 
 def _localizer(map: Path, points: int, lines: bool) -> Localizer:
@@ -232,7 +226,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     :param map: folder of a map.
     :param out: a name in .csv, or '-' for standard output, for the table ``frames.csv`` alone: of each image whether there is a pose, or why
         not, its covariance and the pose. Else a folder to write: ``trajectory.txt``, ``frames.csv``, a COLMAP model of the localized images and, with
-        `pictures`, ``matches/``. Results come there when all are complete; older ones are replaced.
+        `pictures`, ``matches/``. Older results there are replaced.
     :param camera: of all images, as Localizer.localize takes it; None for each one's own, by its EXIF data or the map.
     :param workers: threads; None for one a core.
     :param log: told of each image without a pose, and why.
@@ -250,9 +244,8 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     names, times, readings = images_of(images, '' if table_alone else out, log), {}, None
     if sequence:
         workers = 1
-    if table_alone:
-        if pictures:
-            raise InvalidOption(f'{out} is no folder, which pictures need')
+    if table_alone and pictures:
+        raise InvalidOption(f'{out} is no folder, which pictures need')
     read = [os.path.join(images, name) for name in names] + Masks(mask).check(names) + ([] if imu is None else [os.fspath(imu)])
     if table_alone:
         check_outputs([out], read)
@@ -275,15 +268,15 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
         location = localizer.localize(image, camera, last, *more)
         last = location.cam_from_world if sequence else None
         return location
-    with contextlib.nullcontext('') if table_alone else new_results(out, 'localize') as part:
+    with contextlib.nullcontext() if table_alone else Results(out, 'localize') as results:
         localizer = _localizer(map, 0, lines)
         for name, own, location in locate(find_next, localizer.cameras, images, names, given, workers, log, exif, mask, max_size):
             location = Location(reason=location) if own is None else location
             row = [name, int(location.found), location.reason, location.matches, location.inliers]
             if own is not None and location.covariance is not None:
                 row += [f'{value:.6g}' for value in location.covariance[np.triu_indices(6)]]
-                if pictures:
-                    _write_picture(os.path.join(part, 'matches', labels[name] + '.png'), os.path.join(images, name), own, location)
+                if pictures and results is not None:
+                    _write_picture(results.place(f'matches/{labels[name]}.png'), os.path.join(images, name), own, location)
             else:
                 log(f'{name}: {location.reason}')
             frames.append(row)
@@ -295,17 +288,14 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
             if smoothed.reason:
                 log(smoothed.reason)
         table = _table(frames, poses)
-        if table_alone:
-            write_whole(out, table)
-            return sum(pose is not None for pose in poses), len(names)
-        write_whole(os.path.join(part, 'frames.csv'), table)
-        with open(os.path.join(part, 'trajectory.txt'), 'w', encoding='utf-8') as trajectory:
-            trajectory.write(f'# name {" ".join(POSE)}\n')
-            trajectory.writelines(f'{labels[name]} {" ".join(_numbers(pose))}\n' for name, pose in zip(names, poses) if pose is not None)
-        posed = [_core.PosedImage(name, own, pose, location.pixels) for name, own, pose, location in zip(names, cameras, poses, found)
-                 if pose is not None and own is not None]
-        if posed:  # no reader takes a model of none
-            _core.writeModel(part, posed)
+        write_whole(out if results is None else results.place('frames.csv'), table)
+        if results is not None:
+            posed_lines = [f'{labels[name]} {" ".join(_numbers(pose))}\n' for name, pose in zip(names, poses) if pose is not None]
+            write_whole(results.place('trajectory.txt'), ''.join([f'# name {" ".join(POSE)}\n', *posed_lines]).encode())
+            posed = [_core.PosedImage(name, own, pose, location.pixels) for name, own, pose, location in zip(names, cameras, poses, found)
+                     if pose is not None and own is not None]
+            if posed:  # no reader takes a model of none
+                _core.writeModel(os.path.dirname([results.place(name + '.bin') for name in ('cameras', 'images', 'points3D')][0]), posed)
     return sum(pose is not None for pose in poses), len(names)
 
 

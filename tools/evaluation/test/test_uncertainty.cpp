@@ -7,34 +7,25 @@
 namespace {
 using namespace iib_tools;
 
-// Quantiles of chi^2 by scipy.stats.chi2.ppf.
-TEST(Uncertainty, chances_are_those_of_chi_squared)
-{
-    const struct
-    {
-        double chance, two, three;
-    } quantiles[] = {{.1, .2107210, .5843744}, {.5, 1.3862944, 2.3659739}, {.95, 5.9914645, 7.8147279},
-            {.99, 9.2103404, 11.3448667}};
-    for (const auto& q : quantiles)
-    {
-        EXPECT_NEAR(q.chance, chanceOf(q.two, 2), 1e-6);
-        EXPECT_NEAR(q.chance, chanceOf(q.three, 3), 1e-6);
-    }
-    EXPECT_EQ(0, chanceOf(0, 2));
-    EXPECT_EQ(0, chanceOf(0, 3));
-    EXPECT_EQ(1, chanceOf(1e6, 3));
-}
-
-TEST(Uncertainty, errors_of_a_covariance_are_in_its_deviations)
+TEST(Uncertainty, errors_are_judged_by_their_covariance)
 {
     const cv::Matx33d spread(2, 0, 0, 1, .5, 0, -3, 1, .1);
     const cv::Vec3d drawn(1, -2, 3);
-    EXPECT_NEAR(drawn.dot(drawn), squaredOf(spread * drawn, spread * spread.t()), 1e-9);
-    EXPECT_NEAR(9 + 4, squaredOf(cv::Vec2d(3, -4), cv::Matx22d(1, 0, 0, 4)), 1e-12);
-    EXPECT_EQ(HUGE_VAL, squaredOf(cv::Vec2d(1e-9, 2), cv::Matx22d(0, 0, 0, 1))) << "told as certain";
-    EXPECT_EQ(4, squaredOf(cv::Vec2d(0, 2), cv::Matx22d(0, 0, 0, 1)));
-    EXPECT_EQ(1, chanceOf(HUGE_VAL, 2));
-    EXPECT_EQ(1, chanceOf(HUGE_VAL, 3));
+    EXPECT_NEAR(drawn.dot(drawn), judged(spread * drawn, spread * spread.t()).squared, 1e-9);
+    const JudgedError error = judged(cv::Vec2d(3, -4), cv::Matx22d(1, 0, 0, 4));
+    EXPECT_NEAR(9 + 4, error.squared, 1e-12);
+    EXPECT_NEAR(std::log(2) / 2, error.logDeviation, 1e-12);
+    EXPECT_EQ(HUGE_VAL, judged(cv::Vec2d(1e-9, 2), cv::Matx22d(0, 0, 0, 1)).squared) << "reported as exact";
+}
+
+TEST(Uncertainty, scores_are_logarithms_of_a_density)
+{
+    double sum = 0;
+    const double step = .1;
+    for (double x = -30; x < 30; x += step)
+        for (double y = -30; y < 30; y += step)
+            sum += std::exp(judged(cv::Vec2d(x, y), cv::Matx22d(.3, .1, .1, .2)).score) * step * step;
+    EXPECT_NEAR(sum, 1, 2e-3);
 }
 
 //! As findRelativePose's documentation has b, t x b and the axis along which t is shortest.

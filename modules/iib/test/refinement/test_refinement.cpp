@@ -81,42 +81,28 @@ TEST(IIB_Refinement, takes_all_types_of_images)
     EXPECT_GT(rightShare(refineIn(floats[0], sixteen[1]), scene().linear, scene().shift), .95);
 }
 
+// Angle -1, as matchRotated leaves it in the first image, is upright.
 TEST(IIB_Refinement, starts_with_the_difference_of_angles)
 {
     Mat turned;
     cv::rotate(scene().images[1], turned, ROTATE_90_CLOCKWISE);
-    std::vector<KeyPoint> first = scene().keypoints[0], second = scene().keypoints[1];
-    for (KeyPoint& kp : second)
-    {
-        kp.pt = Point2f(turned.cols - 1 - kp.pt.y, kp.pt.x);
-        kp.angle = 130;
-    }
     const Matx22d quarter(0, -1, 1, 0);
-    const Matx22d linear = quarter * scene().linear;
     const Vec2d shift = quarter * scene().shift + Vec2d(turned.cols - 1, 0);
-    EXPECT_LT(
-            rightShare(refine(scene().images[0], first, turned, second, scene().matches), linear, shift), .1);
-    for (KeyPoint& kp : first)
-        kp.angle = 40;
-    EXPECT_GT(rightShare(refine(scene().images[0], first, turned, second, scene().matches), linear, shift),
-            .95);
-}
-
-// Angle -1, as matchRotated leaves it in the first image, is upright.
-TEST(IIB_Refinement, a_keypoint_without_an_angle_is_upright)
-{
-    Mat turned;
-    cv::rotate(scene().images[1], turned, ROTATE_90_CLOCKWISE);
-    std::vector<KeyPoint> second = scene().keypoints[1];
-    for (KeyPoint& kp : second)
+    const float angles[][2] = {{-1, 90}, {40, 130}, {-1, 130}};  // of the keypoints of either image
+    for (const auto& angle : angles)
     {
-        kp.pt = Point2f(turned.cols - 1 - kp.pt.y, kp.pt.x);
-        kp.angle = 90;
+        std::vector<KeyPoint> first = scene().keypoints[0], second = scene().keypoints[1];
+        for (KeyPoint& kp : first)
+            kp.angle = angle[0];
+        for (KeyPoint& kp : second)
+        {
+            kp.pt = Point2f(turned.cols - 1 - kp.pt.y, kp.pt.x);
+            kp.angle = angle[1];
+        }
+        const Refined r = refine(scene().images[0], first, turned, second, scene().matches);
+        const double right = rightShare(r, quarter * scene().linear, shift);
+        EXPECT_TRUE(angle[0] < 0 && angle[1] > 90 ? right < .1 : right > .95) << angle[1] << ": " << right;
     }
-    const Matx22d quarter(0, -1, 1, 0);
-    const Refined r = refine(scene().images[0], scene().keypoints[0], turned, second, scene().matches);
-    EXPECT_GT(rightShare(r, quarter * scene().linear, quarter * scene().shift + Vec2d(turned.cols - 1, 0)),
-            .95);
 }
 
 // What matchRotated finds, and what codes of the gradients' direction match, whose keypoints tell no angle.
@@ -322,15 +308,11 @@ TEST(IIB_Refinement, takes_points_anywhere)
                           .similarities.at<float>(0));
 }
 
-TEST(IIB_Refinement, without_matches_all_is_empty)
+TEST(IIB_Refinement, without_matches_all_is_empty_and_errors_say_what_is_wrong)
 {
-    const Refined r = refine(Mat(), {}, Mat(), {}, {});
-    for (const Mat& m : {r.points1, r.points2, r.covariances, r.similarities})
+    const Refined none = refine(Mat(), {}, Mat(), {}, {});
+    for (const Mat& m : {none.points1, none.points2, none.covariances, none.similarities})
         EXPECT_TRUE(m.empty());
-}
-
-TEST(IIB_Refinement, errors_say_what_is_wrong)
-{
     const Mat image = scene().images[0];
     const std::vector<KeyPoint> keypoints = {KeyPoint(50, 50, 9)};
     const std::vector<DMatch> match = {DMatch(0, 0, 0)};

@@ -105,26 +105,52 @@ std::vector<size_t> ImageLocator::similarImages(const Mat& codes) const
     return order;
 }
 
-void ImageLocator::locate(const Camera& camera, const Affine3d* prior, LocatedImage& found) const
+std::vector<Match> ImageLocator::matchesOf(
+        const Features& features, const std::vector<size_t>& compared, const Affine3d* prior) const
 {
     std::vector<Match> matches;
-    for (size_t k : found.compared)
+    for (size_t k : compared)
     {
         const MapImage& image = map_.images[k];
         const std::vector<Point3d> points = map_.seenBy(image);
         std::vector<DMatch> matched;
         if (!points.empty())
-            matcher_->match(found.features.codes, image.codes, matched,
-                    prior ? gate(found.features, points, camera, *prior) : Mat());
+            matcher_->match(features.codes, image.codes, matched,
+                    prior ? gate(features, points, features.camera, *prior) : Mat());
         for (const DMatch& m : matched)
-            matches.push_back({found.features.pixels[size_t(m.queryIdx)], points[size_t(m.trainIdx)],
+            matches.push_back({features.pixels[size_t(m.queryIdx)], points[size_t(m.trainIdx)],
                     image.sees[size_t(m.trainIdx)], m.queryIdx, int(m.distance), int(k), m.trainIdx,
-                    Vec2f(image.sizes[size_t(m.trainIdx)], found.features.sizes[size_t(m.queryIdx)])});
+                    Vec2f(image.sizes[size_t(m.trainIdx)], features.sizes[size_t(m.queryIdx)])});
     }
+    return matches;
+}
+
+void ImageLocator::locate(const Camera& camera, const Affine3d* prior, LocatedImage& found) const
+{
+    const std::vector<Match> matches = matchesOf(found.features, found.compared, prior);
     found.location.reason = "too few matches";
     found.location.matches = found.location.inliers = 0;
     if (matches.size() >= LEAST_INLIERS)
         findPose(matches, map_, pictures_, camera, found);
+}
+
+bool ImageLocator::isMirrored(
+        const Camera& camera, const Mat& image, const Mat& mask, const LocatedImage& found) const
+{
+    Mat mirrored, mirroredMask;
+    flip(image, mirrored, 1);
+    if (!mask.empty())
+        flip(mask, mirroredMask, 1);
+    Features features;
+    extract(*iib_, mirrored, mirroredMask, features);
+    if (features.pixels.empty())
+        return false;
+    features.camera = camera;
+    double& centre = features.camera.parameters[focalsOf(camera.model)];
+    centre = camera.size.width - centre;
+    const std::vector<Match> matches = matchesOf(features, similarImages(features.codes), nullptr);
+    return matches.size() >= LEAST_INLIERS &&
+           countInliers(matches, features.camera) > std::max(found.location.inliers, (int)LEAST_INLIERS);
 }
 
 std::vector<size_t> ImageLocator::similarImagesInViews(const ImageViews& image) const
@@ -198,8 +224,18 @@ LocatedImage ImageLocator::find(
         found.compared = similarImages(found.features.codes);
         locate(camera, nullptr, found);
     }
-    if (!found.location.found && !prior)
-        locateInViews(camera, upright.image(image.pixels), upright.image(image.mask), found);
+    const bool isClear = found.location.inliers > SHARE_CERTAIN * (double)found.location.matches;
+    if (!prior && !(found.location.found && isClear))
+    {
+        const Mat pixels = upright.image(image.pixels), mask = upright.image(image.mask);
+        if (isMirrored(camera, pixels, mask, found))
+        {
+            found.location = Location();
+            found.location.reason = "the image is mirrored: flip it";
+        }
+        else if (!found.location.found)
+            locateInViews(camera, pixels, mask, found);
+    }
     found.prepared = PreparedPicture();
     Location& location = found.location;
     if (location.found)

@@ -20,7 +20,12 @@ public:
 private:
     std::vector<size_t> nearestImages(const Affine3d& pose) const;
     std::vector<size_t> similarImages(const Mat& codes) const;
+    //! Matches an image's keypoints with points of some of the map's images.
+    std::vector<Match> matchesOf(
+            const Features& features, const std::vector<size_t>& compared, const Affine3d* prior) const;
     void locate(const Camera& camera, const Affine3d* prior, LocatedImage& found) const;
+    //! Whether the mirror image agrees better with the map; symmetric parts of a mirrored image have wrong poses.
+    bool isMirrored(const Camera& camera, const Mat& image, const Mat& mask, const LocatedImage& found) const;
     std::vector<size_t> similarImagesInViews(const ImageViews& image) const;
     //! Matches views of the image with views of the map's most similar images.
     void locateInViews(const Camera& camera, const Mat& image, const Mat& mask, LocatedImage& found) const;

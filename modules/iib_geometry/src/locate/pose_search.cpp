@@ -41,6 +41,18 @@ int keypointsOf(const std::vector<Match>& matches)
     return int(keypoints.size());
 }
 
+double limitOf(const Camera& camera) { return MAX_ERROR * std::max(camera.size.width, camera.size.height); }
+
+//! The matches with the fewest differing bits, for RANSAC.
+std::vector<Match> mostSimilar(const std::vector<Match>& matches)
+{
+    std::vector<Match> similar;
+    for (size_t i : best(matches.size(), RANSAC_MATCHES,
+                 [&](size_t a, size_t b) { return matches[a].bits < matches[b].bits; }))
+        similar.push_back(matches[i]);
+    return similar;
+}
+
 //! Matches under a pose, for errorsOfWrongMatches().
 class PlacedMatches
 {
@@ -78,8 +90,7 @@ public:
     PoseSearch(const std::vector<Match>& all, const Map& map, PreparedPictures& pictures,
             const Camera& camera, LocatedImage& found)
         : map_(map), views_{map, pictures, found.prepared}, found_(found), location_(found.location),
-          frame_(all), lens_(camera), limit_(MAX_ERROR * std::max(camera.size.width, camera.size.height)),
-          all_(all)
+          frame_(all), lens_(camera), limit_(limitOf(camera)), all_(all)
     {
         for (Match& m : all_)
             m.point = frame_.toLocal(m.point);
@@ -90,12 +101,8 @@ public:
     //! Estimates the pose from matched keypoints, and refines both.
     bool byKeypoints()
     {
-        std::vector<Match> ranked;
-        for (size_t i : best(matches_.size(), RANSAC_MATCHES,
-                     [&](size_t a, size_t b) { return matches_[a].bits < matches_[b].bits; }))
-            ranked.push_back(matches_[i]);
         location_.reason = "too few matches agree";
-        if (!poseByRansac(ranked, lens_, limit_, pose_))
+        if (!poseByRansac(mostSimilar(matches_), lens_, limit_, pose_))
             return false;
         for (int round = 0; round < ROUNDS; round++)
         {
@@ -230,6 +237,19 @@ private:
 };
 
 }  // namespace
+
+int countInliers(const std::vector<Match>& all, const Camera& camera)
+{
+    std::vector<Match> matches = withoutRepeated(all);
+    const Frame frame(matches);
+    for (Match& m : matches)
+        m.point = frame.toLocal(m.point);
+    const Lens lens(camera);
+    Affine3d pose;
+    if (!poseByRansac(mostSimilar(matches), lens, limitOf(camera), pose))
+        return 0;
+    return keypointsOf(within(limitOf(camera), matches, lens, pose));
+}
 
 void findPose(const std::vector<Match>& matches, const Map& map, PreparedPictures& pictures,
         const Camera& camera, LocatedImage& found)

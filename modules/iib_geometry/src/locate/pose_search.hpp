@@ -28,6 +28,9 @@ struct LocatedImage
 void findPose(const std::vector<Match>& matches, const Map& map, PreparedPictures& pictures,
         const Camera& camera, LocatedImage& found);
 
+//! Number of keypoints that agree with the RANSAC pose of the matches; 0 without a pose.
+int countInliers(const std::vector<Match>& matches, const Camera& camera);
+
 //! The first `count` of the indices below `all`, sorted by `before`.
 template <typename Before> std::vector<size_t> best(size_t all, size_t count, Before before)
 {

@@ -229,4 +229,18 @@ double logFalseAlarms(
             verdict.chance(epipolar ? Verdict::FROM_LINE : Verdict::FROM_POINT, threshold, wrong));
 }
 
+double confidenceLimit(double probability, int dimensions)
+{
+    const double share = .25;  // of the covariance, that is the scale matrix: chosen on rendered places
+    if (!(probability >= 0 && probability < 1))
+        CV_Error(Error::StsOutOfRange,
+                format("confidenceLimit: probability is %g; it is 0 or more and below 1", probability));
+    if (dimensions < 1)
+        CV_Error(Error::StsOutOfRange,
+                format("confidenceLimit: dimensions is %d; it is 1 or more", dimensions));
+    // Of Student's t with two degrees of freedom in d dimensions, the chance of being inside is (m / (m + 2 share))^(d / 2).
+    const double root = std::pow(probability, 2. / dimensions);
+    return 2 * share * root / (1 - root);
+}
+
 }  // namespace cv::iib

@@ -103,6 +103,25 @@ TEST_F(Localization, in_a_map_of_rotated_photographs)
     expectAt(TRUTH, localizer.localize(wall.image(TRUTH), CAMERA), .02);
 }
 
+// A symmetric part of a mirrored image agrees with a wrong pose.
+TEST_F(Localization, mirrored_images_are_refused_where_a_part_is_symmetric)
+{
+    const Localizer localizer(folder.path("map"));
+    const Affine3d pose = poseAt(.1, 0, .05);
+    const Mat image = wall.image(pose);
+    Mat mirrored;
+    flip(image, mirrored, 1);
+    const Rect part(110, 60, 110, 130);
+    Mat mostlyMirrored = mirrored.clone(), mostlyRight = image.clone();
+    image(part).copyTo(mostlyMirrored(part));
+    mirrored(part).copyTo(mostlyRight(part));
+    const Location wrong = localizer.localize(mostlyMirrored, CAMERA),
+                   right = localizer.localize(mostlyRight, CAMERA);
+    EXPECT_FALSE(wrong.found);
+    EXPECT_EQ(wrong.reason, "the image is mirrored: flip it");
+    expectAt(pose, right, .05);
+}
+
 TEST_F(Localization, uses_only_what_a_mask_allows)
 {
     const Localizer localizer(folder.path("map"));

@@ -208,5 +208,32 @@ TEST(Verdict, a_place_of_many_matches_agrees_by_more_chance_than_a_match)
     EXPECT_LT(Verdict(points[0], points[1]).logFalseAlarms(all, agreeing, 5, chance), -3);
 }
 
+TEST(Verdict, confidence_limits_are_those_of_students_t)
+{
+    RNG random(5);
+    for (int dimensions : {1, 2, 3, 5})
+        for (double probability : {.5, .95})
+        {
+            const double limit = confidenceLimit(probability, dimensions);
+            const int trials = 20000;
+            int inside = 0;
+            for (int trial = 0; trial < trials; trial++)
+            {
+                double squared = 0, freedom = 0;
+                for (int k = 0; k < dimensions; k++)
+                    squared += std::pow(random.gaussian(.5), 2);
+                for (int k = 0; k < 2; k++)
+                    freedom += std::pow(random.gaussian(1), 2) / 2;
+                inside += squared / freedom < limit;
+            }
+            EXPECT_NEAR((double)inside / trials, probability, .015) << dimensions;
+        }
+    EXPECT_EQ(confidenceLimit(0, 3), 0);
+    EXPECT_THROW(confidenceLimit(1, 3), cv::Exception);
+    EXPECT_THROW(confidenceLimit(-.1, 3), cv::Exception);
+    EXPECT_THROW(confidenceLimit(std::numeric_limits<double>::quiet_NaN(), 3), cv::Exception);
+    EXPECT_THROW(confidenceLimit(.5, 0), cv::Exception);
+}
+
 }  // namespace
 }  // namespace opencv_test

@@ -50,8 +50,7 @@ within a radius of the query has the query within that radius.
  - #ADAPTIVE: approximate. Stops at 25 % of the last level if the partial distance exceeds the query's best by more than
    1.75 sigma (sigma = sqrt(n) / 2 for n bits so far). Train descriptors are compared in groups of 2048, in the order in
    which they were added; the best is that of the group and of those before. Distances are exact; neighbours may be
-   missed, and nothing is promised for a single query. Of the right matches of #EXACT (170 bytes, k = 1) it keeps at
-   least 98 % on the images of the test IIB_Real.adaptive_keeps_the_correct_matches, on which the bound was not tuned.
+   missed, and nothing is promised for a single query.
    Descriptors of up to 4 bytes are compared as in #EXACT, and so is radiusMatch.
 
 **Threads.** Calls run on cv::parallel_for_; results are the same for every number of threads and every

@@ -34,15 +34,9 @@ turned so: whichever agrees better.
 @param points1 N x 2, CV_32F, a row for each match, in pixels: the first points, as they were detected.
 @param points2 N x 2, CV_32F, in pixels: the second points, refined, or as they were detected where that was refused.
 @param covariances N x 3, CV_32F: xx, xy and yy of points2 given points1, in squared pixels, from the differences that
-remain and from how far these agree among neighbouring samples; never 0. Of refused matches 1, 0 and 1. 39 and 86 % of
-the errors should lie inside the ellipses of one and two standard deviations. Of white noise of 1 to 20 grey levels it is
-34 to 52 and 76 to 91 % (four pictures), of JPEG's errors, qualities 30 to 90, 27 to 68 and 66 to 93 %. On a straight edge
-noise alone tells the place along it: that is told as a pixel and more. Another light leaves differences that neighbours
-share, and is told by a term of its own: by other lamps 54 and 77 % of matches that begin within 2 pixels of the truth
-(0.6 pixels off in the median, since shading moves; `photographs_by_other_lamps` of IIB_RefinementAccuracy, two objects).
-Under another exposure alone it is twice as large as need be (85 and 98 %). The documentation's page "How sure" counts
-more kinds of light, whatever ends within 3 pixels of the truth, wrong matches too, and so has lower shares. What all
-matches of a pair share is not in it: a camera that moved by a tenth of a pixel, light that moved every shadow.
+remain and from how far these agree among neighbouring samples; never 0. Of refused matches 1, 0 and 1. Along a straight
+edge the standard deviation is a pixel or more. Errors that all matches of a pair share are not in it: a camera that moved
+by a tenth of a pixel, light that moved every shadow. The documentation's page "How sure" counts how often they hold.
 @param similarities N x 1, CV_32F: the correlation of the two patches where they agree best, above 0.5 up to 1; -1 where
 the match was refused.
 @throws cv::Exception (StsOutOfRange) for indices without a keypoint, (StsBadArg) for an empty image, and as

@@ -161,7 +161,8 @@ from these matches. Then inliers are refined against the map's images (refineMat
 A pose is accepted if all of these hold:
 - it has 15 inliers plus 2 % of the matches;
 - such a pose is expected in less than one of a thousand sets of random matches, as in findRelativePose;
-- three standard deviations of its position are below a tenth of the scene's distance.
+- three standard deviations of its position are below a tenth of the scene's distance;
+- without a prior, the mirror image does not agree better with the map.
 
 An image without a pose, and without a prior, is then matched in views with the five most similar images of the map (as
 matchViews, without tilts). This finds images at any rotation, and from up to four times nearer or farther. It takes 5

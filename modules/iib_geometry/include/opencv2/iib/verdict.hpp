@@ -31,6 +31,18 @@ take it for no more than chance above -3, one in a thousand.
 CV_EXPORTS_W double logFalseAlarms(
         InputArray points1, InputArray points2, InputArray inliers, bool epipolar, double threshold);
 
+/** @brief How far off an estimate may be: the limit of the squared Mahalanobis distance error^T covariance^-1 error within which errors lie
+with a given probability, under the covariances of findRelativePose, alignImages, refineMatches and Localizer.
+
+The errors have longer tails than Gaussian ones: some estimates are wrong by more than their matches show. They follow Student's t with two
+degrees of freedom, whose scale matrix is a quarter of the reported covariance. Compare a distance with this limit, not with a quantile of
+chi-squared. doc/uncertainty.md counts errors inside the limit by kind of data.
+
+@param probability 0 or more and below 1: the share of the errors
+@param dimensions 1 or more: numbers in an error, such as 3 of a rotation, 2 of a direction or of a point
+@throws cv::Exception (StsOutOfRange) for other values */
+CV_EXPORTS_W double confidenceLimit(double probability, int dimensions);
+
 //! @}
 
 }  // namespace iib
