@@ -9,10 +9,10 @@
 #include <cstring>
 #include <limits>
 
-//! A target, which libFuzzer calls with one input after the other.
+//! A target; libFuzzer calls it once per input.
 extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size);
 
-//! Ends the run, with the input kept, if the library broke a promise.
+//! Ends the run if the library broke a promise; the fuzzer then keeps the input.
 #define FUZZ_CHECK(condition)                                                                                \
     do                                                                                                       \
     {                                                                                                        \
@@ -29,7 +29,7 @@ class ByteSource
 public:
     ByteSource(const uchar* data, size_t size) : next(data), end(data + size) {}
 
-    template <typename T> T take()
+    template <typename T> T read()
     {
         T value = T();
         const size_t size = std::min(sizeof(T), left());
@@ -40,37 +40,37 @@ public:
     }
 
     size_t left() const { return (size_t)(end - next); }
-    bool flag() { return (take<uchar>() & 1) != 0; }
+    bool flag() { return (read<uchar>() & 1) != 0; }
 
-    //! Once in n times, n <= 256: for what is worth trying, but takes long.
+    //! True once in n times, n <= 256: for slow cases.
     bool rarely(int n) { return between(0, n - 1) == n - 1; }
 
-    //! lo..hi, at most 65,536 of them.
+    //! A number from lo to hi, of at most 65,536.
     int between(int lo, int hi)
     {
         const int count = hi - lo + 1;
-        return lo + (count <= 256 ? (int)take<uchar>() : (int)take<ushort>()) % count;
+        return lo + (count <= 256 ? (int)read<uchar>() : (int)read<ushort>()) % count;
     }
 
-    //! Everyday numbers, and those that break code.
+    //! An ordinary number, or one that often breaks code.
     float number()
     {
         static const float special[] = {0.f, -0.f, -1.f, 1e-30f, FLT_MIN / 2, 1e9f, -1e9f, 2147483648.f,
                 1e20f, FLT_MAX, -FLT_MAX, std::numeric_limits<float>::infinity(),
                 -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()};
-        const int kind = take<uchar>();
+        const int kind = read<uchar>();
         if (kind < 200)
-            return (float)take<short>() / 64;
+            return (float)read<short>() / 64;
         if (kind < 240)
             return special[kind % (int)(sizeof(special) / sizeof(special[0]))];
-        return take<float>();
+        return read<float>();
     }
 
 private:
     const uchar *next, *end;
 };
 
-//! cv::setNumThreads, which takes as long as a small input, only where it changes something.
+//! Calls cv::setNumThreads only if the number changes, since the call takes as long as a small input.
 inline void useThreads(int count)
 {
     static int inUse = -1;
@@ -80,8 +80,8 @@ inline void useThreads(int count)
     inUse = count;
 }
 
-//! Whether the library refuses a call with a cv::Exception. A target says so of what it may refuse; an exception from any
-//! other call ends the run.
+//! Whether a call throws a cv::Exception. Targets use this for calls that may be refused; any other exception ends the
+//! run.
 template <typename Call> inline bool refused(const Call& call)
 {
     try

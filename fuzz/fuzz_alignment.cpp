@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// ImageAligner, alignImages and matchViews with small images of any type, masks and models: a cv::Exception for what the header forbids and
-// for nothing else; else no transform with a reason, or one with no more freedom than the model, of matches that masks allow.
+// ImageAligner, alignImages and matchViews with small images of any type, masks and models. Expects a cv::Exception
+// exactly for arguments that the header forbids. Otherwise expects a reason, or a transform of the model from matches
+// inside the masks.
 
 #include "images.hpp"
 
@@ -18,7 +19,7 @@ using namespace cv::iib;
 
 const int SIDE = 128;
 
-//! Patches of a few pixels, another picture for each seed.
+//! A picture of patches of a few pixels, different for each seed.
 const Mat& texture(int seed)
 {
     static std::map<int, Mat> known;
@@ -32,8 +33,8 @@ const Mat& texture(int seed)
     return picture;
 }
 
-//! From pixels of the image to those of the texture, by more or less freedom.
-Matx33d takeTransform(ByteSource& in)
+//! From pixels of the image to those of the texture; a translation, similarity, affine map or homography.
+Matx33d drawTransform(ByteSource& in)
 {
     const auto upTo = [&](double most) { return most * in.between(-100, 100) / 100; };
     Matx33d transform(1, 0, upTo(20), 0, 1, upTo(20), 0, 0, 1);
@@ -48,31 +49,31 @@ Matx33d takeTransform(ByteSource& in)
     return in.flag() ? Matx33d(1, 0, 0, 0, 1, 0, upTo(2e-3), upTo(2e-3), 1) * transform : transform;
 }
 
-//! A picture of one seed in most runs, moved, in its light and type; or anything.
-Mat takePicture(ByteSource& in, int seed, const Matx33d& transform)
+//! In most runs a transformed picture of the seed, with its own brightness and type; otherwise any image.
+Mat drawPicture(ByteSource& in, int seed, const Matx33d& transform)
 {
     if (in.rarely(16))
     {
-        const Size size = takeSize(in);
-        return takeImage(in, size, in.flag());
+        const Size size = drawSize(in);
+        return drawImage(in, size, in.flag());
     }
     const int width = in.between(1, 6) * SIDE / 8;
     const Size size(width, in.between(1, 6) * SIDE / 8);
     Mat image;
     warpPerspective(texture(in.rarely(8) ? seed + 1 : seed), image, transform, size, INTER_LINEAR,
             in.flag() ? BORDER_REFLECT : BORDER_CONSTANT);
-    const int depth = takeDepth(in), channels = in.between(1, 4);
+    const int depth = drawDepth(in), channels = in.between(1, 4);
     image.convertTo(image, depth, in.between(0, 20) / 10. * (depth == CV_8U ? 1 : 256), in.between(-60, 60));
     merge(std::vector<Mat>((size_t)(channels == 2 ? 1 : channels), image), image);
     return image;
 }
 
-//! Of the image's size in most runs; empty in half of them.
-Mat takeMask(ByteSource& in, const Mat& image)
+//! A mask, empty in half of the runs; otherwise mostly of the image's size.
+Mat drawMask(ByteSource& in, const Mat& image)
 {
     if (in.flag())
         return Mat();
-    Mat mask(in.rarely(16) ? takeSize(in) : image.size(), in.rarely(32) ? CV_16U : CV_8U,
+    Mat mask(in.rarely(16) ? drawSize(in) : image.size(), in.rarely(32) ? CV_16U : CV_8U,
             Scalar(in.between(0, 255)));
     const Rect part(in.between(0, SIDE), in.between(0, SIDE), in.between(1, SIDE), in.between(1, SIDE));
     mask(part & Rect(Point(), mask.size())).setTo(in.between(0, 1));
@@ -86,7 +87,7 @@ bool fits(const Mat& mask, const Mat& image)
     return mask.empty() || (mask.type() == CV_8U && mask.size() == image.size());
 }
 
-//! Refinement moves a point, and views show a mask to a pixel or two.
+//! Checks that a point is near a mask; not inside, since refinement moves points and views resample masks.
 void checkAllowed(const Mat& mask, const Point2f& point)
 {
     const Rect around(Point((int)point.x - 4, (int)point.y - 4), Size(9, 9));
@@ -128,7 +129,7 @@ void checkAnswer(const Mat& reference, const Mat& mask, const Mat& image, const 
     FUZZ_CHECK(error.size() == Size(1, 4) && error.type() == CV_64F && checkRange(error));
     const Matx33d m(found);
     FUZZ_CHECK(std::abs(m(2, 2) - 1) < 1e-12 && determinant(m) != 0);
-    // What the model leaves free, but for rounding.
+    // The constraints of the model, up to rounding.
     const double most = 1e-9 * norm(m);
     FUZZ_CHECK(model == ALIGN_HOMOGRAPHY || std::hypot(m(2, 0), m(2, 1)) <= most);
     FUZZ_CHECK(model >= ALIGN_AFFINE || std::hypot(m(0, 0) - m(1, 1), m(0, 1) + m(1, 0)) <= most);
@@ -140,7 +141,8 @@ void checkAnswer(const Mat& reference, const Mat& mask, const Mat& image, const 
     {
         const Vec4f match = matches.at<Vec4f>(i);
         const Rect2f there(Point2f(-3, -3), Size2f(image.size()) + Size2f(6, 6));
-        const Point first((int)(match[0] + .5f), (int)(match[1] + .5f));  // as OpenCV masks keypoints
+        const Point first(
+                (int)(match[0] + .5f), (int)(match[1] + .5f));  // rounded as in OpenCV's masking of keypoints
         FUZZ_CHECK(Rect(Point(), reference.size()).contains(first) &&
                    there.contains(Point2f(match[2], match[3])));
         checkAllowed(mask, Point2f(match[0], match[1]));
@@ -151,11 +153,11 @@ void checkAnswer(const Mat& reference, const Mat& mask, const Mat& image, const 
 void run(ByteSource& in)
 {
     const int seed = in.between(0, 3), model = in.between(-in.rarely(32), ALIGN_HOMOGRAPHY);
-    const Mat reference = takePicture(in, seed, Matx33d::eye()), mask = takeMask(in, reference);
+    const Mat reference = drawPicture(in, seed, Matx33d::eye()), mask = drawMask(in, reference);
     useThreads(1);
     if (in.flag())
     {
-        const Mat image = takePicture(in, seed, takeTransform(in)), other = takeMask(in, image);
+        const Mat image = drawPicture(in, seed, drawTransform(in)), other = drawMask(in, image);
         return checkViews(
                 reference, mask, image, other, in.rarely(32) ? in.between(-1, 10) : in.between(1, 8));
     }
@@ -164,7 +166,7 @@ void run(ByteSource& in)
                (model < 0 || !fits(mask, reference)));
     for (int images = in.between(1, 2); images > 0 && aligner; images--)
     {
-        const Mat image = takePicture(in, seed, takeTransform(in)), other = takeMask(in, image);
+        const Mat image = drawPicture(in, seed, drawTransform(in)), other = drawMask(in, image);
         Mat found, error, matches, again(1, 1, CV_8U);
         String reason;
         bool aligned = false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// IIBDescriptorExtractor::compute with any parameters, image, keypoints and extra maps: a cv::Exception or
-// descriptors that the naive oracle and a second run give as well.
+// IIBDescriptorExtractor::compute with any parameters, image, keypoints and extra maps. Expects a cv::Exception, or the
+// descriptors of the naive oracle, twice.
 
 #include "images.hpp"
 #include "support/descriptor_oracle.hpp"
@@ -16,8 +16,8 @@ namespace {
 using namespace fuzz;
 using cv::iib::IIB;
 
-//! @param mayBeRefused whether any parameter is one that a setter may refuse.
-Ptr<IIB> takeExtractor(ByteSource& in, bool& mayBeRefused)
+//! @param mayBeRefused receives whether a setter may refuse any of the parameters.
+Ptr<IIB> drawExtractor(ByteSource& in, bool& mayBeRefused)
 {
     if (in.between(0, 7) == 7)
     {
@@ -26,14 +26,14 @@ Ptr<IIB> takeExtractor(ByteSource& in, bool& mayBeRefused)
         return IIB::createPreset(preset, in.number());
     }
     Ptr<IIB> iib = IIB::create();
-    const int wild = in.between(0, 3) == 3;  // values out of range in a quarter of the runs
+    const int wild = in.between(0, 3) == 3;  // a quarter of the runs has values out of range
     mayBeRefused = wild != 0;
     iib->setScaleFactor(wild ? in.number() : 1 + in.between(0, 40) / 8.f);
     iib->setGranularity(in.between(1 - wild, (in.rarely(8) ? in.rarely(8) ? 6 : 3 : 2) + wild));
     iib->setExtraChannels(in.rarely(32) ? in.between(-wild, 16 + wild) : in.between(0, 1));
     iib->setChannels(in.between(1 - wild, 63 + wild));
     const int mapping = in.between(-wild, IIB::MAPPING_BOXES + wild);
-    mayBeRefused = mayBeRefused || mapping == IIB::MAPPING_BOXES;  // not with every channel, nor with overlap
+    mayBeRefused = mayBeRefused || mapping == IIB::MAPPING_BOXES;  // refused with overlap and some channels
     iib->setMapping(mapping);
     iib->setOverlap(in.flag());
     iib->setOrientation(in.between(-wild, 2 + wild));
@@ -58,7 +58,7 @@ Ptr<IIB> takeExtractor(ByteSource& in, bool& mayBeRefused)
     return iib;
 }
 
-std::vector<KeyPoint> takeKeyPoints(ByteSource& in, Size size)
+std::vector<KeyPoint> drawKeyPoints(ByteSource& in, Size size)
 {
     std::vector<KeyPoint> keypoints;
     const bool wild = in.flag();
@@ -110,7 +110,7 @@ void run(ByteSource& in)
 {
     Ptr<IIB> iib;
     bool mayBeRefused = false;
-    if (refused([&] { iib = takeExtractor(in, mayBeRefused); }))
+    if (refused([&] { iib = drawExtractor(in, mayBeRefused); }))
     {
         FUZZ_CHECK(mayBeRefused);
         return;
@@ -118,13 +118,13 @@ void run(ByteSource& in)
     const std::vector<int> levels = iib->levelSizes();
     FUZZ_CHECK(std::accumulate(levels.begin(), levels.end(), 0) == iib->descriptorSize());
 
-    const Size size = takeSize(in);
-    const bool odd = in.between(0, 15) == 15;  // a type that is refused
-    const Mat image = takeImage(in, size, odd);
+    const Size size = drawSize(in);
+    const bool odd = in.between(0, 15) == 15;  // types that may be refused
+    const Mat image = drawImage(in, size, odd);
     std::vector<Mat> extra;
     for (int i = iib->getExtraChannels() + odd; i > 0; i--)
-        extra.push_back(takeImage(in, odd ? takeSize(in) : size, takeDepth(in), 1));
-    const std::vector<KeyPoint> given = takeKeyPoints(in, size);
+        extra.push_back(drawImage(in, odd ? drawSize(in) : size, drawDepth(in), 1));
+    const std::vector<KeyPoint> given = drawKeyPoints(in, size);
 
     std::vector<KeyPoint> keypoints = given, again = given;
     Mat descriptors(3, 3, CV_8U), repeated;
@@ -143,7 +143,7 @@ void run(ByteSource& in)
                descriptors.size() == Size(iib->descriptorSize(), (int)keypoints.size()));
     checkAgainstOracle(*iib, image, extra, keypoints, descriptors);
 
-    // Other memory, another cut of the work, the same bits.
+    // The bits must not depend on memory or on the split of the work.
     if (in.rarely(128))
         useThreads(3);
     for (Mat& m : extra)

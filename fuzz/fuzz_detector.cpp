@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// NormalizedDetector with any image and sigma: a cv::Exception, or what the detector inside sees is the image that the
-// naive oracle makes. estimateRotation with any keypoints and matches: a cv::Exception or an angle; matchRotated of any
-// images likewise. Detectors of extractors: keypoints with descriptors, or a cv::Exception.
+// NormalizedDetector with any image and sigma: expects a cv::Exception, or that the inner detector gets the image of
+// the naive oracle. estimateRotation and matchRotated with any arguments: a cv::Exception or an angle. Detectors of
+// extractors: a cv::Exception, or keypoints with descriptors.
 
 #include "images.hpp"
 #include "detector/hessian_oracle.hpp"
@@ -19,7 +19,7 @@ void normalize(ByteSource& in)
 {
     const bool wild = in.between(0, 7) == 7, odd = in.between(0, 15) == 15;
     const float sigma = wild ? in.number() : 1 + in.between(0, in.rarely(16) ? 1000 : 60) / 4.f;
-    const Mat image = takeImage(in, takeSize(in), odd);
+    const Mat image = drawImage(in, drawSize(in), odd);
     useThreads(in.rarely(128) ? 3 : 1);
 
     const Ptr<CaptureDetector> capture = makePtr<CaptureDetector>();
@@ -35,12 +35,12 @@ void normalize(ByteSource& in)
         FUZZ_CHECK(cv::norm(oracle::normalizeLocally(image, sigma), capture->seen, NORM_INF) == 0);
 }
 
-//! The keypoints of the oracle, for any image and parameters.
+//! HessianDetector must find the oracle's keypoints, for any image and parameters.
 void blobs(ByteSource& in)
 {
     const Ptr<HessianDetector> detector = HessianDetector::create(in.between(0, 40), in.between(0, 9) / 100.f,
             in.between(1, 8), in.between(15, 80) / 10.f, (float)in.between(2, 40));
-    const Mat image = takeImage(in, takeSize(in), in.flag() ? CV_8U : CV_16U, 1);
+    const Mat image = drawImage(in, drawSize(in), in.flag() ? CV_8U : CV_16U, 1);
     std::vector<KeyPoint> keypoints;
     detector->detect(image, keypoints);
     const bool tooSmall = image.rows < 2 || image.cols < 2;
@@ -53,7 +53,7 @@ void blobs(ByteSource& in)
                    keypoints[i].octave == expected[i].octave);
 }
 
-std::vector<Point2f> takePoints(ByteSource& in)
+std::vector<Point2f> drawPoints(ByteSource& in)
 {
     std::vector<Point2f> points(in.between(0, 12));
     for (Point2f& point : points)
@@ -66,10 +66,10 @@ std::vector<Point2f> takePoints(ByteSource& in)
 
 bool isFinite(const Point2f& point) { return std::isfinite(point.x) && std::isfinite(point.y); }
 
-//! Any points and matches: an angle if two matches differ in both images, and only if all are of finite points.
+//! Any points and matches: expects an angle if two matches differ in both images, and only if all points are finite.
 void rotation(ByteSource& in)
 {
-    const std::vector<Point2f> first = takePoints(in), second = takePoints(in);
+    const std::vector<Point2f> first = drawPoints(in), second = drawPoints(in);
     std::vector<KeyPoint> keypoints[2];
     KeyPoint::convert(first, keypoints[0]);
     KeyPoint::convert(second, keypoints[1]);
@@ -92,10 +92,10 @@ void rotation(ByteSource& in)
     FUZZ_CHECK(thrown ? !apart : finite && angle >= 0 && angle < 360);
 }
 
-//! Any images and keypoints, of which few are refused.
+//! Any images and keypoints; most are accepted.
 void matchImages(ByteSource& in)
 {
-    static Ptr<IIB> presets[10];  // making one takes longer than matching
+    static Ptr<IIB> presets[10];  // reused, since creation takes longer than matching
     Ptr<IIB>& iib = presets[in.between(0, 9)];
     if (!iib)
         iib = IIB::createPreset((int)(&iib - presets), 2.f);
@@ -105,8 +105,8 @@ void matchImages(ByteSource& in)
     std::vector<KeyPoint> keypoints[2];
     for (int i = 0; i < 2; i++)
     {
-        const Size size = takeSize(in);
-        images[i] = takeImage(in, size, takeDepth(in), 1);
+        const Size size = drawSize(in);
+        images[i] = drawImage(in, size, drawDepth(in), 1);
         for (int k = in.between(0, 12); k > 0; k--)
         {
             const float x = in.rarely(64) ? in.number() : (float)in.between(0, size.width);
@@ -125,7 +125,7 @@ void matchImages(ByteSource& in)
         FUZZ_CHECK(m.queryIdx < (int)keypoints[0].size() && m.trainIdx < (int)keypoints[1].size());
 }
 
-//! detectAndCompute is detect of the detector, then compute.
+//! detectAndCompute must equal the detector's detect, then compute.
 void detectAndCompute(ByteSource& in)
 {
     Ptr<Feature2D> detector = FastFeatureDetector::create(in.between(1, 40));
@@ -137,14 +137,14 @@ void detectAndCompute(ByteSource& in)
     if (!iib)
         return;
     FUZZ_CHECK(iib->getDetector() == detector);
-    const Size size = takeSize(in);
-    const Mat image = takeImage(in, size, takeDepth(in), 1);
+    const Size size = drawSize(in);
+    const Mat image = drawImage(in, size, drawDepth(in), 1);
     std::vector<KeyPoint> expected, keypoints;
     Mat expectedDescriptors, descriptors;
     FUZZ_CHECK(refused([&] { iib->detect(image, expected); }) == !isImage(image));
     if (!isImage(image))
         return;
-    if (image.depth() == CV_8U)  // FAST itself takes no other type
+    if (image.depth() == CV_8U)  // FAST accepts no other type
         detector->detect(image, expected);
     std::vector<KeyPoint> detected = expected;
     iib->compute(image, expected, expectedDescriptors);

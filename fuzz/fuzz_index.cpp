@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// HierarchicalMatcher::loadIndex on any bytes, with a right checksum in half of the runs: a cv::Exception, or an
-// index that works and is the same when saved and loaded again.
+// HierarchicalMatcher::loadIndex on any bytes, with a right checksum in half of the runs. Expects a cv::Exception, or
+// an index that works and stays the same when saved and loaded again.
 
 #include "byte_source.hpp"
 #include "support/temporary_file.hpp"
@@ -14,7 +14,7 @@ namespace {
 using namespace cv;
 using cv::iib::HierarchicalMatcher;
 
-//! Appends what saveIndex ends a file with: FNV-1a of all before, little-endian.
+//! Appends the checksum of saveIndex: FNV-1a of all bytes before, little-endian.
 std::string withChecksum(std::string bytes)
 {
     cv::iib::Fnv1a hash;

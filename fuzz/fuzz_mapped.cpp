@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// MappedIndex on a manifest and a segment that say anything, with right checksums in most runs: a cv::Exception, or an
-// index that finds what brute force finds.
+// MappedIndex on any manifest and segment, with right checksums in most runs. Expects a cv::Exception, or the results
+// of brute force.
 
 #include "byte_source.hpp"
 #include "support/temporary_file.hpp"
@@ -14,7 +14,7 @@ namespace {
 using namespace cv;
 using cv::iib::MappedIndex;
 
-//! A file as checked_file.hpp has it. Each number is another one now and then.
+//! Writes a file in the format of checked_file.hpp, sometimes with wrong numbers.
 class FileOf
 {
 public:
@@ -23,14 +23,14 @@ public:
     {
         if (in.rarely(64))
         {
-            value = in.flag() ? in.take<uint64>() : (uint64)in.take<short>() << in.between(0, 56);
+            value = in.flag() ? in.read<uint64>() : (uint64)in.read<short>() << in.between(0, 56);
             altered = true;
         }
         for (int i = 0; i < size; i++)
             text += (char)(value >> 8 * i);
     }
     void bytes(const std::string& more) { text += more; }
-    //! Appends the hash of all so far, and returns it.
+    //! Appends and returns the hash of all bytes so far.
     uint64 seal()
     {
         cv::iib::Fnv1a hash;
@@ -42,7 +42,7 @@ public:
     {
         if (in.rarely(64))
         {
-            text.resize(in.take<ushort>() % (text.size() + 1));
+            text.resize(in.read<ushort>() % (text.size() + 1));
             altered = true;
         }
         return text;
@@ -56,7 +56,7 @@ private:
     bool altered = false;
 };
 
-//! As code_segment.cpp has it.
+//! The checksum of code_segment.cpp.
 uint64 wordHash(const std::string& bytes)
 {
     uint64 state = CV_BIG_UINT(0xcbf29ce484222325);
@@ -69,14 +69,14 @@ uint64 wordHash(const std::string& bytes)
     return state;
 }
 
-//! A single level of up to 4 bytes is a word, and has no filling in either packing: 64 bytes are 16 codes.
+//! A level of up to 4 bytes is one word, without padding in either packing: 64 bytes hold 16 codes.
 const int BLOCK_BYTES = 64, CODES_PER_BLOCK = 16;
 
-//! What the files written last are like.
+//! The state of the files written last.
 struct Written
 {
-    bool mayBeRefused;  //!< they differ from what the library writes
-    bool filled;        //!< bits that belong to no code may be set, and count in distances
+    bool mayBeRefused;  //!< whether they differ from files of the library
+    bool filled;        //!< whether padding bits may be set, which then count in distances
 };
 
 Written write(ByteSource& in, const String& folder)
@@ -99,19 +99,19 @@ Written write(ByteSource& in, const String& folder)
     for (int count : rows)
         codes.number(count, 8);
     std::string blocks((all + CODES_PER_BLOCK - 1) / CODES_PER_BLOCK * BLOCK_BYTES, '\0');
-    const bool filled = in.rarely(8);  // with bits that belong to no code
+    const bool filled = in.rarely(8);  // with padding bits set
     for (size_t i = 0; i < blocks.size(); i++)
     {
         const int place = i % BLOCK_BYTES, code = tables ? place % CODES_PER_BLOCK : place / 4,
                   byte = tables ? place / CODES_PER_BLOCK : place % 4;
         if (filled || (byte < levelBytes && (int)(i / BLOCK_BYTES) * CODES_PER_BLOCK + code < all))
-            blocks[i] = (char)in.take<uchar>();
+            blocks[i] = (char)in.read<uchar>();
     }
     for (size_t i = 0; i < blocks.size(); i += checkedBlocks * BLOCK_BYTES)
         codes.number(wordHash(blocks.substr(i, checkedBlocks * BLOCK_BYTES)), 8);
     const uint64 checksum = codes.seal();
     codes.bytes(std::string((4096 - codes.size() % 4096) % 4096, '\0') + blocks);
-    const int segments = in.between(0, 3);  // of the same codes
+    const int segments = in.between(0, 3);  // all with the same codes
     for (int i = 1; i <= segments; i++)
         opencv_test::writeFile(folder + format("/segment-%06d.iib", i), codes.whole());
 
@@ -136,7 +136,7 @@ Written write(ByteSource& in, const String& folder)
             filled || codes.isAltered()};
 }
 
-//! Rows that a search finds are those of the images, and their distances those of the images' codes, unless these are filled.
+//! A search must find the images' rows with the right distances, unless padding bits are set.
 void check(const MappedIndex& index, bool filled)
 {
     FUZZ_CHECK(index.images() >= 0 && index.rows() >= 0);
@@ -179,7 +179,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
     return runTarget(
             [](ByteSource& in) {
                 const Written written = write(in, folder.name);
-                // Files are also checked by the call that reads them first.
+                // The first call that reads a file also checks it.
                 const bool thrown = refused([&] { check(*MappedIndex::open(folder.name), written.filled); });
                 FUZZ_CHECK(!thrown || written.mayBeRefused);
             },

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// HierarchicalMatcher with any level sizes, mode, thresholds, images, masks, k and radius: a cv::Exception where the header
-// says so, else what a model finds that is searched pair by pair. Calls come in sequences on matchers and their copies: what
-// is added, copied, cleared, saved, loaded or set must be all that later answers depend on.
+// HierarchicalMatcher with any level sizes, mode, thresholds, images, masks, k and radius. Expects a cv::Exception as
+// in the header, otherwise the matches of a model that compares all pairs. Calls come in sequences on matchers and
+// their copies: later results must depend only on what was added, copied, cleared, saved, loaded or set.
 
 #include "byte_source.hpp"
 #include "support/matcher_oracle.hpp"
@@ -16,7 +16,7 @@ using namespace cv;
 using namespace opencv_test;
 using namespace cv::iib;
 
-//! Whether two answers hold the same matches in the same order.
+//! Whether two results have the same matches in the same order.
 bool equal(const Matches& a, const Matches& b)
 {
     const auto sameMatch = [](const DMatch& x, const DMatch& y) {
@@ -29,14 +29,15 @@ bool equal(const Matches& a, const Matches& b)
     return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), sameRow);
 }
 
-//! A matcher and what it should be.
+//! A matcher and its model.
 struct Subject
 {
     Ptr<HierarchicalMatcher> matcher;
     MatcherOracle model;
-    bool ofAnyWidth = false;  //!< create() without level sizes, which takes the width of the first codes
-    ScanChunk chunk;          //!< in which a search beside it goes
-    bool isKnown = true;      //!< whether the model finds what the matcher's mode does
+    bool ofAnyWidth =
+            false;        //!< made by create() without level sizes, so that the first codes decide the width
+    ScanChunk chunk;      //!< chunk of a separate search
+    bool isKnown = true;  //!< whether the model supports the matcher's mode
 
     //! Whether the matcher knows the level sizes already.
     bool knowsLevels() const
@@ -45,7 +46,7 @@ struct Subject
                std::any_of(model.images.begin(), model.images.end(), [](const Mat& m) { return m.rows > 0; });
     }
 
-    //! As the matcher's mode is; the model knows ADAPTIVE's sample only within a last level of more than a word.
+    //! Sets the mode of both; the model supports ADAPTIVE's sample only with a last level of more than a word.
     void setMode(int mode)
     {
         matcher->setMode(mode);
@@ -56,7 +57,7 @@ struct Subject
                 mode == HierarchicalMatcher::ADAPTIVE ? 16 * PruningPolicy::CODE_BLOCKS_OF_LIMITS : 0;
     }
 
-    //! A new matcher of the same parameters and codes.
+    //! Replaces the matcher by another one with the same parameters and codes.
     void replace(const Ptr<HierarchicalMatcher>& other)
     {
         matcher = other;
@@ -72,7 +73,7 @@ public:
     void run()
     {
         const bool wild = in.rarely(8);  // parameters that may be refused
-        if (refused([&] { subjects.assign(1, takeFirst(wild)); }))
+        if (refused([&] { subjects.assign(1, drawFirst(wild)); }))
         {
             FUZZ_CHECK(wild);
             return;
@@ -85,7 +86,7 @@ public:
     }
 
 private:
-    Subject takeFirst(bool wild)
+    Subject drawFirst(bool wild)
     {
         Subject s;
         s.ofAnyWidth = !wild && in.rarely(4);
@@ -95,15 +96,15 @@ private:
         s.model.crossCheck = in.flag() && !s.ofAnyWidth;
         s.matcher = s.ofAnyWidth ? HierarchicalMatcher::create()
                                  : HierarchicalMatcher::create(s.model.levelSizes,
-                                           in.between(-wild, 2 + wild), takeShare(wild), s.model.crossCheck);
+                                           in.between(-wild, 2 + wild), drawShare(wild), s.model.crossCheck);
         s.setMode(s.matcher->getMode());
         if (in.flag())
             setChunk(s);
         return s;
     }
 
-    //! 0 to 1, or anything.
-    float takeShare(bool wild) { return wild ? in.number() : in.between(0, 64) / 64.f; }
+    //! A number from 0 to 1, or any number.
+    float drawShare(bool wild) { return wild ? in.number() : in.between(0, 64) / 64.f; }
 
     void step(Subject& s)
     {
@@ -126,17 +127,17 @@ private:
         }
     }
 
-    Mat takeDescriptors(int bytes)
+    Mat drawDescriptors(int bytes)
     {
-        Mat codes = randomDescriptors(in.take<uchar>(), in.between(0, in.rarely(32) ? 70 : 7), bytes);
+        Mat codes = randomDescriptors(in.read<uchar>(), in.between(0, in.rarely(32) ? 70 : 7), bytes);
         for (int i = in.between(0, 4); i > 0 && !codes.empty(); i--)
-            codes.at<uchar>(in.between(0, codes.rows - 1), in.between(0, bytes - 1)) = in.take<uchar>();
+            codes.at<uchar>(in.between(0, codes.rows - 1), in.between(0, bytes - 1)) = in.read<uchar>();
         return codes;
     }
 
     void add(Subject& s)
     {
-        const Mat codes = takeDescriptors(width);
+        const Mat codes = drawDescriptors(width);
         switch (in.between(0, 2))
         {
         case 0: s.matcher->add(codes); break;
@@ -149,7 +150,7 @@ private:
         }
         s.model.images.push_back(codes.clone());
         added.push_back(codes);
-        // Codes of another width throw and leave everything as it was.
+        // Codes of another width must throw and change nothing.
         if (in.rarely(4) && s.knowsLevels())
             FUZZ_CHECK(refused([&] { s.matcher->add(Mat(2, width + 1, CV_8U, Scalar(1))); }));
     }
@@ -171,7 +172,7 @@ private:
         subjects.push_back(other);
     }
 
-    //! An index has the level sizes of its codes.
+    //! A loaded index must have the level sizes of its codes.
     void reload(Subject& s)
     {
         static const TemporaryFile file;
@@ -182,7 +183,7 @@ private:
         s.ofAnyWidth = false;
     }
 
-    //! Parameters go through a file into a matcher of the same codes.
+    //! Writes parameters to a file and reads them into a matcher with the same codes.
     void reread(Subject& s)
     {
         FileStorage out(".yml", FileStorage::WRITE | FileStorage::MEMORY);
@@ -207,7 +208,7 @@ private:
     {
         s.model.crossCheck = in.flag();
         s.matcher->setCrossCheck(s.model.crossCheck);
-        // What is refused changes nothing.
+        // A refused call must change nothing.
         const bool wild = in.rarely(8);
         const float maxRatio = wild ? in.number() : in.between(1, 16) / 16.f;
         const bool valid = maxRatio > 0 && maxRatio <= 1;
@@ -215,26 +216,26 @@ private:
         s.model.maxRatio = valid ? maxRatio : s.model.maxRatio;
         std::vector<float> thresholds(in.flag() ? 1 : s.model.levelSizes.size() - !wild);
         for (float& threshold : thresholds)
-            threshold = takeShare(wild);
+            threshold = drawShare(wild);
         if (!thresholds.empty())
             FUZZ_CHECK(!refused([&] { s.matcher->setThresholds(thresholds); }) || wild || s.ofAnyWidth);
         const int mode = in.between(HierarchicalMatcher::EXACT - wild, HierarchicalMatcher::ADAPTIVE + wild);
         s.setMode(refused([&] { s.matcher->setMode(mode); }) ? s.matcher->getMode() : mode);
     }
 
-    //! Values are copied when they are added; what becomes of the caller's matrices has no effect.
+    //! Codes are copied when added: later changes of the caller's matrices must have no effect.
     void overwrite(const Subject& s)
     {
         for (Mat& m : added)
             if (!m.empty())
-                m.setTo(in.take<uchar>());
+                m.setTo(in.read<uchar>());
         const Ptr<DescriptorMatcher> copy = s.matcher->clone(false);
         for (Mat m : copy->getTrainDescriptors())
             if (!m.empty())
                 m.setTo(1);
     }
 
-    //! What does not fit the codes is refused, where there are any.
+    //! Arguments that do not fit the codes must be refused.
     void askWrongly(const Subject& s)
     {
         std::vector<Mat> masks(s.model.images.size());
@@ -253,18 +254,18 @@ private:
         FUZZ_CHECK(refused([&] { s.matcher->knnMatch(queries, found, 2, masks); }));
     }
 
-    //! One of the searches, among the codes that were added or in given ones.
+    //! Runs one of the searches, in the added codes or in given ones.
     void ask(const Subject& s)
     {
         if (in.rarely(16))
             askWrongly(s);
-        const Mat queries = takeDescriptors(width);
+        const Mat queries = drawDescriptors(width);
         MatcherOracle model = s.model;
         const bool given = in.rarely(4);
         if (given)
-            model.images.assign(1, takeDescriptors(width));
+            model.images.assign(1, drawDescriptors(width));
         else if (in.flag())
-            model.masks = takeMasks(model.images, queries);
+            model.masks = drawMasks(model.images, queries);
         const int k = in.rarely(16) ? INT_MAX : in.between(1, 20);
         switch (in.between(0, 3))
         {
@@ -283,7 +284,7 @@ private:
                                    [](const std::vector<DMatch>& row) { return row.empty(); }),
                     expected.end());
         if (!hasBothSets(queries, model))
-            expected.assign(2, std::vector<DMatch>());  // what was there before
+            expected.assign(2, std::vector<DMatch>());  // the previous content
         FUZZ_CHECK(!s.isKnown || equal(expected, found));
         SearchCost cost;
         model.adaptiveBlock = model.adaptiveBlock > 0 ? 16 * s.chunk.codeBlocksOfLimits : 0;
@@ -291,18 +292,18 @@ private:
         FUZZ_CHECK(!s.isKnown || equal(model.knn(queries, k), found));
     }
 
-    std::vector<Mat> takeMasks(const std::vector<Mat>& images, const Mat& queries)
+    std::vector<Mat> drawMasks(const std::vector<Mat>& images, const Mat& queries)
     {
         std::vector<Mat> masks;
         for (const Mat& image : images)
             masks.push_back(
                     in.flag() || queries.empty() || image.empty()
                             ? Mat()
-                            : randomMask(in.take<uchar>(), queries.rows, image.rows, in.between(0, 4) / 4.));
+                            : randomMask(in.read<uchar>(), queries.rows, image.rows, in.between(0, 4) / 4.));
         return masks;
     }
 
-    //! Else DescriptorMatcher returns at once.
+    //! DescriptorMatcher returns at once unless both sets have descriptors.
     static bool hasBothSets(const Mat& queries, const MatcherOracle& model)
     {
         return !queries.empty() && !model.images.empty();
@@ -324,7 +325,7 @@ private:
             FUZZ_CHECK(!thrown && found.empty());
             return;
         }
-        FUZZ_CHECK(!thrown || !(radius > FLT_EPSILON));  // also one that is no number
+        FUZZ_CHECK(!thrown || !(radius > FLT_EPSILON));  // also true for NaN
         if (!(radius > FLT_EPSILON))
             return;
         const int whole = cvFloor(std::min((double)radius, 8. * width));
@@ -363,7 +364,7 @@ private:
         FUZZ_CHECK(!s.isKnown || equal(model.knn(queries, k), found));
     }
 
-    //! What is set is what is reported.
+    //! Getters must return what was set.
     void inspect(const Subject& s)
     {
         const std::vector<Mat> images = s.matcher->getTrainDescriptors();
@@ -384,7 +385,7 @@ private:
     ByteSource& in;
     int width = 0;
     std::vector<Subject> subjects;
-    std::vector<Mat> added;  //!< the matrices as their owner sees them
+    std::vector<Mat> added;  //!< the caller's matrices
 };
 
 void run(ByteSource& in) { Session(in).run(); }

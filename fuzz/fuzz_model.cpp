@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// readModel on the files of a COLMAP model, binary or text, that say anything: a cv::Exception, or images with cameras, poses and
-// keypoints that writeModel takes, and which are the same when they are read again.
+// readModel on any files of a COLMAP model, binary or text. Expects a cv::Exception, or images that writeModel accepts
+// and that are the same when read again.
 
 #include "byte_source.hpp"
 #include "map/colmap_model.hpp"
@@ -12,12 +12,11 @@ namespace {
 using namespace cv;
 using namespace cv::iib;
 
-//! The next so many bytes.
-std::string takeBytes(ByteSource& in, size_t count)
+std::string drawBytes(ByteSource& in, size_t count)
 {
     std::string bytes(std::min(count, in.left()), '\0');
     for (char& byte : bytes)
-        byte = in.take<char>();
+        byte = in.read<char>();
     return bytes;
 }
 
@@ -27,7 +26,7 @@ bool finite(const std::vector<Point2d>& points)
             [](const Point2d& p) { return std::isfinite(p.x) && std::isfinite(p.y); });
 }
 
-//! Exactly, but for what is rounded: a rotation in its quaternion, and keypoints, whose pixels begin half a pixel further on.
+//! Equality up to rounding of quaternions, and of keypoints by the shift of half a pixel.
 void checkSame(const PosedImage& again, const PosedImage& image)
 {
     const Affine3d &a = again.cameraFromWorld, &b = image.cameraFromWorld;
@@ -65,11 +64,11 @@ void check(const std::vector<PosedImage>& images)
 
 void run(ByteSource& in)
 {
-    static const opencv_test::TemporaryFolder folders[2];  // binary and text
+    static const opencv_test::TemporaryFolder folders[2];  // of binary and of text files
     const bool text = in.flag();
     const std::string end = text ? ".txt" : ".bin", &folder = folders[text].name;
-    opencv_test::writeFile(folder + "/cameras" + end, takeBytes(in, in.take<ushort>()));
-    opencv_test::writeFile(folder + "/images" + end, takeBytes(in, in.left()));
+    opencv_test::writeFile(folder + "/cameras" + end, drawBytes(in, in.read<ushort>()));
+    opencv_test::writeFile(folder + "/images" + end, drawBytes(in, in.left()));
     std::vector<PosedImage> images;
     if (!refused([&] { images = readModel(folder); }))
         check(images);

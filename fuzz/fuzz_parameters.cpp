@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Parameters through FileStorage, selections included: any tree of names and values is refused by a cv::Exception
-// and changes nothing, or is read and written back alike. The tree is built by OpenCV's writer, since its parser of
-// text is not this module's.
+// Parameters and selections in FileStorage. Any tree of names and values must be refused by a cv::Exception without a
+// change, or be the same when written again. OpenCV's writer builds the tree, since OpenCV's parser is not under test.
 
 #include "byte_source.hpp"
 
@@ -18,14 +17,14 @@ const char* const NAMES[] = {"format", "scaleFactor", "granularity", "channels",
         "useOrientation", "extraChannels", "border", "selection", "levelSizes", "mode", "thresholds",
         "crossCheck", "maxRatio", "other"};
 
-//! A number, mostly a small one.
-int takeInt(ByteSource& in) { return in.between(0, 15) == 15 ? in.take<int>() : in.between(-1, 17); }
+//! A number, mostly small.
+int drawInt(ByteSource& in) { return in.between(0, 15) == 15 ? in.read<int>() : in.between(-1, 17); }
 
 void writeValue(ByteSource& in, FileStorage& fs, int depth)
 {
     const int kind = in.between(0, 9);
     if (kind < 4)
-        fs << takeInt(in);
+        fs << drawInt(in);
     else if (kind < 6)
         fs << in.number();
     else if (kind == 6)
@@ -42,12 +41,12 @@ void writeValue(ByteSource& in, FileStorage& fs, int depth)
             else if (kind == 8 && depth < 3)
                 writeValue(in, fs, depth + 1);
             else
-                fs << takeInt(in);
+                fs << drawInt(in);
         fs << (kind == 9 && depth < 3 ? "}" : "]");
     }
 }
 
-String takeTree(ByteSource& in)
+String drawTree(ByteSource& in)
 {
     FileStorage fs(".yml", FileStorage::WRITE | FileStorage::MEMORY);
     fs << "object"
@@ -91,7 +90,7 @@ template <typename T> void read(T& object, const FileNode& node)
 
 void run(ByteSource& in)
 {
-    const FileStorage fs(takeTree(in), FileStorage::READ | FileStorage::MEMORY);
+    const FileStorage fs(drawTree(in), FileStorage::READ | FileStorage::MEMORY);
     const FileNode node = in.between(0, 15) == 15 ? fs["object"]["selection"] : fs["object"];
     read(*IIB::create(), node);
     read(*HierarchicalMatcher::create(std::vector<int>(1, 4)), node);

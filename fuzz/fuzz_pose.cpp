@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// findRelativePose, logFalseAlarms and the fits of alignImages with any matches, repeated, on a line, huge, tiny or none: a
-// cv::Exception for what is no input, else no answer with a reason, or a rotation, a direction and a covariance.
+// findRelativePose, logFalseAlarms and the fits of alignImages with any matches: repeated, collinear, huge, tiny or
+// none. Expects a cv::Exception for invalid arguments, otherwise a reason, or a rotation, a direction and a covariance.
 
 #include "byte_source.hpp"
 #include "pose/planar_problem.hpp"
@@ -18,18 +18,18 @@ using namespace cv;
 using namespace cv::iib;
 
 const int MOST = 40;
-const double FARTHEST_POINT = 1e9;  // that the functions take
+const double FARTHEST_POINT = 1e9;  // largest valid coordinate
 
-double takeNumber(ByteSource& in, double usual) { return in.rarely(32) ? in.number() : usual; }
+double drawNumber(ByteSource& in, double usual) { return in.rarely(32) ? in.number() : usual; }
 
-//! Matches of one kind and size, with some numbers in them that are anything. Rarely many of them are wrong, since that takes long.
-void takeMatches(ByteSource& in, Mat& first, Mat& second)
+//! Matches of one kind and size, with a few arbitrary numbers. Inputs with many outliers are rare, since they are slow.
+void drawMatches(ByteSource& in, Mat& first, Mat& second)
 {
     const int kind = in.between(0, 4);
     const bool slow = in.rarely(64);
     const int count = in.between(0, slow ? MOST : kind == 4 ? 7 : 14);
     const double size = std::pow(10., in.rarely(8) ? in.between(-12, 9) : 0);
-    RNG random(in.take<uchar>() + 1);
+    RNG random(in.read<uchar>() + 1);
     const double noise = in.between(0, 8) / (slow ? 4. : 32.);
     const Vec3d t = in.flag() ? Vec3d(.3, .1, 0) : Vec3d();
     first.create(count, 2, CV_64F);
@@ -49,8 +49,8 @@ void takeMatches(ByteSource& in, Mat& first, Mat& second)
             const double a = 320 + 500 * X[c] / X[2] + random.gaussian(noise),
                          b = kind == 4 ? random.uniform(0., 640.)
                                        : 320 + 500 * Y[c] / Y[2] + random.gaussian(noise);
-            first.at<double>(i, c) = takeNumber(in, a * size);
-            second.at<double>(i, c) = takeNumber(in, b * size);
+            first.at<double>(i, c) = drawNumber(in, a * size);
+            second.at<double>(i, c) = drawNumber(in, b * size);
         }
     }
     if (in.rarely(64) && count > 0)
@@ -64,8 +64,8 @@ bool arePoints(const Mat& points)
 
 void checkPose(ByteSource& in, const Mat& first, const Mat& second, bool valid)
 {
-    const double focal = takeNumber(in, in.flag() ? 500 : std::pow(10., in.between(-3, 6))),
-                 scale = in.flag() ? 0 : takeNumber(in, in.between(0, 40) / 8.);
+    const double focal = drawNumber(in, in.flag() ? 500 : std::pow(10., in.between(-3, 6))),
+                 scale = in.flag() ? 0 : drawNumber(in, in.between(0, 40) / 8.);
     const Matx33d K(focal, 0, 320, 0, 500, 240, 0, 0, 1);
     valid = valid && std::isfinite(focal) && focal > 0 && std::isfinite(scale) && scale >= 0;
     Mat R, t, inliers, covariance;
@@ -97,7 +97,7 @@ void checkVerdict(ByteSource& in, const Mat& first, const Mat& second, bool vali
     Mat marks(first.rows, 1, CV_8U);
     for (int i = 0; i < marks.rows; i++)
         marks.at<uchar>(i) = in.rarely(3) ? 0 : 1;
-    const double threshold = takeNumber(in, 1);
+    const double threshold = drawNumber(in, 1);
     valid = valid && std::isfinite(threshold) && threshold > 0;
     double alarms = 0;
     const bool epipolar = in.flag(),
@@ -121,7 +121,7 @@ void checkTransform(ByteSource& in, const Mat& first, const Mat& second)
 void run(ByteSource& in)
 {
     Mat first, second;
-    takeMatches(in, first, second);
+    drawMatches(in, first, second);
     useThreads(1);
     const bool valid = first.rows == second.rows && arePoints(first) && arePoints(second);
     checkPose(in, first, second, valid);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// refineMatches and propagateMatches with any images, keypoints and matches: a cv::Exception of both for what is no input, else
-// outputs of the documented shapes, where what is refused stays as it was, and what is added is as the header says.
+// refineMatches and propagateMatches with any images, keypoints and matches. Expects a cv::Exception of both for
+// invalid arguments, otherwise outputs of the documented shapes: refused matches are unchanged, and added ones are as
+// in the header.
 
 #include "images.hpp"
 #include "test_precomp.hpp"
@@ -13,7 +14,7 @@ namespace {
 using namespace fuzz;
 using namespace opencv_test;
 
-std::vector<KeyPoint> takeKeyPoints(ByteSource& in, Size size)
+std::vector<KeyPoint> drawKeyPoints(ByteSource& in, Size size)
 {
     std::vector<KeyPoint> keypoints(in.between(0, 12));
     for (KeyPoint& kp : keypoints)
@@ -36,7 +37,7 @@ bool allValid(const std::vector<KeyPoint>& keypoints)
     return true;
 }
 
-//! What a call returns for each match.
+//! The outputs of a call for each match.
 struct Refined
 {
     Mat points1, points2, covariances, similarities;
@@ -65,7 +66,7 @@ bool equal(const Mat& few, const Mat& more)
     return few.empty() || cvtest::norm(few, more.rowRange(0, few.rows), NORM_INF) == 0;
 }
 
-//! What was found besides the matches that were given.
+//! Checks the matches that were added to the given ones.
 void checkAdded(const std::vector<DMatch>& matches, size_t given, const Mat& similarities)
 {
     for (size_t i = given; i < matches.size(); i++)
@@ -83,32 +84,32 @@ void run(ByteSource& in)
     std::vector<KeyPoint> keypoints[2];
     for (int i = 0; i < 2; i++)
     {
-        const Size size = in.flag() ? Size(in.between(1, 99), in.between(1, 80)) : takeSize(in);
-        images[i] = takeImage(in, size, in.rarely(32));
-        keypoints[i] = takeKeyPoints(in, size);
+        const Size size = in.flag() ? Size(in.between(1, 99), in.between(1, 80)) : drawSize(in);
+        images[i] = drawImage(in, size, in.rarely(32));
+        keypoints[i] = drawKeyPoints(in, size);
     }
-    const bool alike = in.flag();  // so that matches are right, and lead to others
+    const bool alike = in.flag();  // matches are right, so that they propagate
     if (alike || in.flag())
         images[1] = images[0];
     if (alike)
         keypoints[1] = keypoints[0];
     useThreads(in.rarely(128) ? 3 : 1);
     std::vector<DMatch> matches(in.between(0, alike ? (int)keypoints[0].size() : 8));
-    const auto takeIndex = [&](int image) {
+    const auto drawIndex = [&](int image) {
         return in.rarely(64) ? in.between(-1, 13)
                              : in.between(0, std::max((int)keypoints[image].size() - 1, 0));
     };
     bool valid = true;
     for (DMatch& m : matches)
     {
-        m.queryIdx = alike ? (int)(&m - matches.data()) : takeIndex(0);
-        m.trainIdx = alike && !in.rarely(16) ? m.queryIdx : takeIndex(1);
+        m.queryIdx = alike ? (int)(&m - matches.data()) : drawIndex(0);
+        m.trainIdx = alike && !in.rarely(16) ? m.queryIdx : drawIndex(1);
         valid = valid && m.queryIdx >= 0 && m.queryIdx < (int)keypoints[0].size() && m.trainIdx >= 0 &&
                 m.trainIdx < (int)keypoints[1].size();
     }
     for (int i = 0; i < 2; i++)
         valid = valid && allValid(keypoints[i]) && !images[i].empty() && isImage(images[i]);
-    valid = valid || matches.empty();  // nothing is looked at then
+    valid = valid || matches.empty();  // then nothing else is read
     Refined alone, propagated;
     FUZZ_CHECK(refused([&] {
         refineMatches(images[0], keypoints[0], images[1], keypoints[1], matches, alone.points1, alone.points2,

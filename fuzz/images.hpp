@@ -9,20 +9,20 @@ namespace fuzz {
 
 using namespace cv;
 
-inline Size takeSize(ByteSource& in)
+inline Size drawSize(ByteSource& in)
 {
-    // few pixels, since time counts; some beyond a vector of 32, some beyond a band of rows
+    // small for speed; some are wider than a vector of 32, or higher than a band of rows
     const int largest = in.rarely(8) ? in.rarely(32) ? 300 : 70 : 12;
     const int width = in.between(0, largest);
     return Size(width, in.between(0, largest));
 }
 
-//! Pixels of any type: noise, ramps, flat places, extremes, and in floats a rare NaN or infinity.
-inline Mat takeImage(ByteSource& in, Size size, int depth, int channels)
+//! Pixels of any type: noise, ramps, flat areas, extremes, and in floats a rare NaN or infinity.
+inline Mat drawImage(ByteSource& in, Size size, int depth, int channels)
 {
     Mat image(size, CV_MAKETYPE(depth, channels));
     const int kind = in.between(0, 7);
-    RNG rng(in.take<ushort>());
+    RNG rng(in.read<ushort>());
     if (image.empty())
         return image;
     if (kind < 3)
@@ -37,7 +37,7 @@ inline Mat takeImage(ByteSource& in, Size size, int depth, int channels)
         for (int i = in.between(0, 3); i > 0; i--)
             image.ptr<float>(in.between(0, size.height - 1))[in.between(0, size.width * channels - 1)] =
                     in.number();
-    // A view into a larger matrix: rows lie apart.
+    // A view into a larger matrix, whose rows are not contiguous.
     if (!in.flag())
         return image;
     const Rect inside(Point(in.between(0, 9), in.between(0, 9)), size);
@@ -47,24 +47,24 @@ inline Mat takeImage(ByteSource& in, Size size, int depth, int channels)
     return whole(inside);
 }
 
-//! A depth that the library takes.
-inline int takeDepth(ByteSource& in)
+//! A depth that the library accepts.
+inline int drawDepth(ByteSource& in)
 {
     const int depths[] = {CV_8U, CV_8U, CV_16U, CV_32F};
     return depths[in.between(0, 3)];
 }
 
-//! @param odd any type, which the library may refuse.
-inline Mat takeImage(ByteSource& in, Size size, bool odd)
+//! @param odd whether to draw any type, which the library may refuse.
+inline Mat drawImage(ByteSource& in, Size size, bool odd)
 {
     const int channels[] = {1, 1, 3, 4};
-    const int depth = odd ? in.between(0, 7) : takeDepth(in);
-    return takeImage(in, size, depth, odd ? in.between(1, 4) : channels[in.between(0, 3)]);
+    const int depth = odd ? in.between(0, 7) : drawDepth(in);
+    return drawImage(in, size, depth, odd ? in.between(1, 4) : channels[in.between(0, 3)]);
 }
 
 inline bool isMap(const Mat& m)
 {
-    // m * 0, since checkRange() takes the largest float for infinity.
+    // m * 0, since checkRange() treats the largest float as infinity.
     return (m.depth() == CV_8U || m.depth() == CV_16U || m.depth() == CV_32F) &&
            (m.empty() || checkRange(m * 0));
 }

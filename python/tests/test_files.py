@@ -114,7 +114,7 @@ class Files(InFolder):
         record.write_text(record.read_text() + '"../thesis"\n"cut o')
         for name in ('out/a.png', 'out/sub/notes', 'out/.hidden', 'out/sub/a.tmp', 'out/c'):
             self.write(name)
-            with self.assertRaisesRegex(FileExistsError, '.*out holds .*, which is of no earlier run'):
+            with self.assertRaisesRegex(FileExistsError, '.*out holds .*, which no earlier run wrote'):
                 self.results('sub/a', 'c')
             self.expect_precious(name)
             (self.folder / name).unlink()

@@ -248,7 +248,7 @@ class Localization(OnWall):
         larger = self.path('model')
         write_model(larger, self.poses, 'PINHOLE,640,480,300,300,320,240')
         self.assertEqual(run_command(*mapping, larger)[0], 1)
-        self.assertRegex(run_command(*mapping, larger)[2], r'\nmap: no point is found in any .* made; .*320 x 240 .* 640 x 480: left out of the map\n$')
+        self.assertRegex(run_command(*mapping, larger)[2], r'\nmap: no keypoint was found in any .* of; .*320 x 240 .* 640 x 480: left out of the map\n$')
         self.assertFalse(os.path.exists(out) and os.listdir(out))
 
     def test_no_command_replaces_what_is_the_users(self):

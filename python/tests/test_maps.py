@@ -69,7 +69,7 @@ class Maps(OnWall):
         seen = Localizer(self.map).localize(self.grey(), CAMERA, mask=mask)
         self.assertGreaterEqual(seen.pixels[:, 0].min(), WIDTH // 2 - 1)
         self.assertLess(Localizer(self.map).localize(self.grey(), CAMERA).pixels[:, 0].min(), WIDTH // 2 - 9)
-        with self.assertRaisesRegex(opencv_iib.error, "a mask is CV_8UC1"):
+        with self.assertRaisesRegex(opencv_iib.error, "a mask must be CV_8UC1"):
             Localizer(self.map).localize(self.grey(), CAMERA, mask=mask[1:])
         status, _ = self.localize(found, '--camera', CAMERA, '--mask', masks, '--max-size', '300')
         self.assertEqual(status, 0)

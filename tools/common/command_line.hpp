@@ -15,15 +15,14 @@
 
 namespace iib_tools {
 
-/** Options of a program by the keys of cv::CommandLineParser, which tells the defaults and the help. It lacks what this adds:
-any number of positional arguments between the options, `--name value` beside `--name=value`, options that are repeated, and
-an error for what it does not know. */
+/** Parses a command line with the keys, defaults and help of cv::CommandLineParser. Adds positional arguments between
+options, `--name value` beside `--name=value`, repeated options, and errors for unknown options. */
 class CommandLine
 {
 public:
-    /** @param keys as cv::CommandLineParser takes them, options only. An empty default makes a switch; every other
-    option takes a value, `<none>` stands for no default. `help` is added, `-h` for short.
-    @throws cv::Exception, code StsBadArg, for an unknown option, a missing or a superfluous value. */
+    /** @param keys options in the format of cv::CommandLineParser. An option with an empty default is a switch; every
+    other option takes a value, and `<none>` means no default. `help` (`-h`) is added.
+    @throws cv::Exception, code StsBadArg, for an unknown option, and a missing or unexpected value. */
     CommandLine(int argc, const char* const* argv, const std::string& about, const std::string& keys)
         : parser_(1, argv, "{help||prints this, as -h}" + keys)
     {
@@ -57,16 +56,16 @@ public:
 
     const std::vector<std::string>& positional() const { return positional_; }
 
-    //! Whether a switch was set, or an option has a value, given or by default.
+    //! Whether a switch is set, or an option has a value or a default.
     bool has(const std::string& name) const { return values_.count(name) || parser_.has(name); }
 
-    //! The value of an option, the last one if it is repeated; empty without value and default.
+    //! The last value of an option, or its default; empty without either.
     std::string text(const std::string& name) const
     {
         return values_.count(name) ? values_.at(name).back() : parser_.get<std::string>(name);
     }
 
-    //! All values of an option that may be repeated, without its default.
+    //! All values of a repeatable option, without its default.
     std::vector<std::string> all(const std::string& name) const
     {
         return values_.count(name) ? values_.at(name) : std::vector<std::string>();
@@ -94,7 +93,7 @@ public:
         return int(n);
     }
 
-    //! What the program does and its options, on the standard output.
+    //! Prints the help to standard output.
     void printHelp() const { parser_.printMessage(); }
 
 private:
@@ -103,9 +102,9 @@ private:
     std::map<std::string, std::vector<std::string>> values_;  // by option
 };
 
-/** The main() of a tool: `--help` prints the help and gives 0; a mistake in the command line is one line on stderr and
-gives 2, any other cv::Exception one line and 1; else what `run` returns.
-@param about what the program does and its positional arguments. */
+/** The main() of a tool. Returns the result of `run`, or 0 for `--help`, 2 for a wrong command line and 1 for any other
+exception. Errors are one line on stderr.
+@param about purpose of the program and its positional arguments. */
 inline int runTool(int argc, const char* const* argv, const std::string& about, const std::string& keys,
         const std::function<int(const CommandLine&)>& run)
 {
@@ -117,7 +116,7 @@ inline int runTool(int argc, const char* const* argv, const std::string& about, 
         line.printHelp();
         return 0;
     }
-    catch (const std::exception& e)  // also of the file system
+    catch (const std::exception& e)  // includes errors of std::filesystem
     {
         const std::string path = argc > 0 ? argv[0] : "";
         const auto* const ours = dynamic_cast<const cv::Exception*>(&e);

@@ -48,7 +48,7 @@ std::map<int, std::string> numberedImages(const std::string& folder, const std::
     return images.count(1) ? images : std::map<int, std::string>();
 }
 
-//! Appends the folder's pairs; false if it is no sequence.
+//! Appends the folder's pairs; false if it is not a sequence.
 bool addSequence(const std::string& folder, std::vector<ImagePair>& pairs)
 {
     bool oxford = false;

@@ -12,7 +12,7 @@
 namespace iib_tools {
 namespace {
 
-//! Kuhn's augmenting path: finds a partner for `from`, moving earlier choices where that helps.
+//! Kuhn's augmenting path: finds a partner for `from`, changing earlier choices if necessary.
 bool findPartner(int from, const std::vector<std::vector<int>>& candidates, std::vector<int>& partner,
         std::vector<int>& visitedBy, int round)
 {

@@ -14,13 +14,13 @@ namespace {
 
 namespace fs = cv::utils::fs;
 
-//! Without skew, which is lost where an image is turned.
+//! Whether K is a camera matrix without skew, since rotating images does not support skew.
 bool isCamera(const cv::Matx33d& K)
 {
     return K(0, 0) > 0 && K(1, 1) > 0 && K == cv::Matx33d(K(0, 0), 0, K(0, 2), 0, K(1, 1), K(1, 2), 0, 0, 1);
 }
 
-//! Up to what five digits leave.
+//! Whether R is a rotation, up to the rounding of files.
 bool isRotation(const cv::Matx33d& R)
 {
     return cv::norm(R * R.t() - cv::Matx33d::eye()) < 1e-2 && cv::determinant(R) > 0;
@@ -53,10 +53,10 @@ bool readPair(const std::string& line, ViewPair& pair)
            pose.row(3) == cv::Matx14d(0, 0, 0, 1);
 }
 
-//! From a camera's axes to those of the camera whose image is this one's turned by a quarter counter-clockwise.
+//! From a camera's axes to those of the camera whose image is rotated a quarter turn counter-clockwise.
 const cv::Matx33d QUARTER(0, 1, 0, -1, 0, 0, 0, 0, 1);
 
-//! Turns an image and its camera by quarters counter-clockwise. @return what that does to the camera's axes.
+//! Rotates an image and its camera by quarter turns counter-clockwise. @return the rotation of the camera's axes.
 cv::Matx33d turn(cv::Mat& image, cv::Matx33d& K, int quarters)
 {
     cv::Matx33d turned = cv::Matx33d::eye();
@@ -88,7 +88,7 @@ std::vector<ViewPair> readPairList(const std::string& file, const std::string& f
                             file.c_str(), int(pairs.size()) + 1));
         if (!known.insert(pair.target).second)
             CV_Error(cv::Error::StsParseError,
-                    cv::format("%s, line %d: the pair is there twice: take one of them out", file.c_str(),
+                    cv::format("%s, line %d: the pair is there twice: remove one of them", file.c_str(),
                             int(pairs.size()) + 1));
         pair.set = "list " + baseName(file);
         pair.referenceFile = fs::join(folder, pair.referenceFile);

@@ -20,9 +20,9 @@ namespace {
 namespace fs = cv::utils::fs;
 
 const int NEIGHBOURS = 3;           // pairs an image in its own folder
-const double LEAST_BASELINE = 0.5;  // metres, so that the direction of the movement can be seen
+const double LEAST_BASELINE = 0.5;  // metres, so that the direction of the translation is determined
 
-//! Calls `line` with each line but empty ones and comments; it returns false for what it does not understand.
+//! Calls `line` with each line except empty ones and comments; it returns false for an invalid line.
 void eachLine(const std::string& file, const std::function<bool(std::istringstream&)>& line)
 {
     std::ifstream in(file);
@@ -52,7 +52,7 @@ cv::Matx33d readCamera(const std::string& file)
     });
     if (count != 1)
         CV_Error(cv::Error::StsParseError, file + ": not one PINHOLE camera");
-    // of COLMAP, whose pixels begin at whole numbers
+    // COLMAP's pixels begin at whole numbers
     return camera - cv::Matx33d(0, 0, .5, 0, 0, .5, 0, 0, 0);
 }
 
@@ -105,7 +105,7 @@ void addWithin(const std::string& set, const ViewFolder& folder, std::vector<Vie
             pairs.push_back(pairOf(set, folder, folder.views[i], folder, folder.views[j]));
 }
 
-//! Pairs the images of all folders but the one called `map` with that one's; false if it or others are missing.
+//! Pairs the images of the other folders with those of `map`; false if `map` or others are missing.
 bool addAcross(const std::string& set, const std::string& map, const std::vector<ViewFolder>& folders,
         std::vector<ViewPair>& pairs)
 {

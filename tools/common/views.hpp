@@ -10,7 +10,7 @@
 
 namespace iib_tools {
 
-//! An image from a known place.
+//! An image with a known pose.
 struct View
 {
     std::string name, file;
@@ -18,7 +18,7 @@ struct View
     cv::Vec3d position;
 };
 
-//! Images of one light and one camera.
+//! Images under one illumination by one camera.
 struct ViewFolder
 {
     std::string name;
@@ -26,31 +26,31 @@ struct ViewFolder
     std::vector<View> views;
 };
 
-/** The folders as tools/synthetic/localization.py writes them, up to four levels below the roots, by what holds them:
-`cameras.txt` (COLMAP, one PINHOLE camera), `poses.txt` (TUM, camera to world, a name a line) and `images/<name>.png` or .jpg. Names
-without an image are left out.
-@throws cv::Exception, with file and line, for a folder whose files are broken. */
+/** Finds folders in the layout of tools/synthetic/localization.py, up to four levels below the roots. Each has
+`cameras.txt` (COLMAP, one PINHOLE camera), `poses.txt` (TUM, camera to world, a name a line) and `images/<name>.png` or
+.jpg. Names without an image are left out.
+@return the folders by their parent folder.
+@throws cv::Exception, with file and line, for broken files. */
 std::map<std::string, std::vector<ViewFolder>> findViewFolders(const std::vector<std::string>& roots);
 
-//! Two images of one scene from known places.
+//! Two images of one scene with known poses.
 struct ViewPair
 {
-    std::string
-            set;  //!< name of the folder that holds the views' folders, or of a list of pairs (pair_list.hpp)
-    std::string sequence;  //!< name of the target's folder; of a list: of the reference's
-    std::string target;    //!< the images' names, joined by a hyphen; of a list: by a blank
+    std::string set;       //!< name of the views' parent folder, or of a list of pairs (pair_list.hpp)
+    std::string sequence;  //!< name of the target's folder; in a list: of the reference's
+    std::string target;    //!< the images' names, joined by a hyphen; in a list: by a blank
     std::string referenceFile, targetFile;
     cv::Matx33d referenceCamera, targetCamera;  //!< focal lengths and centre, pixels
     cv::Matx33d rotation;                       //!< from the reference's axes to the target's
-    cv::Vec3d translation;                      //!< of the same, its length unknown to the methods under test
+    cv::Vec3d translation;                      //!< likewise; methods under test do not know its length
     bool sameLight;                             //!< whether both images are of one folder
-    int referenceTurns, targetTurns;            //!< quarters clockwise that an image was taken turned by
+    int referenceTurns, targetTurns;            //!< clockwise quarter turns at which the images were taken
 };
 
 //! Whether a folder holds `cameras.txt`, `poses.txt` and `images`.
 bool holdsViews(const std::string& folder);
 
-//! A walk as tools/synthetic/render.py writes it: a folder `<scene>_<light>` with `camera.yml`, `frames/k.png` and `depth/k.png`.
+//! A walk by tools/synthetic/render.py: a folder `<scene>_<light>` with `camera.yml`, `frames/k.png` and `depth/k.png`.
 struct Walk
 {
     std::string folder, scene, light;
@@ -58,17 +58,18 @@ struct Walk
     double depthScale;                //!< metres a step of depth
     std::vector<cv::Affine3d> poses;  //!< of frames 1, 2, ...: from the world's axes to the camera's, metres
 
-    //! Of the file of a frame, "frames" or "depth", which may be missing.
+    //! The path of a frame's file, which may be missing. @param kind "frames" or "depth"
     std::string file(const char* kind, int frame) const;
 };
 
-/** The walks up to four levels below the folders.
-@throws cv::Exception for a camera file without what is needed. */
+/** Finds walks up to four levels below the folders.
+@throws cv::Exception for an incomplete camera file. */
 std::vector<Walk> findWalks(const std::vector<std::string>& roots);
 
-/** Finds pairs in the folders of findViewFolders. An image is paired with the next three of its folder; where other folders lie
-beside a folder `map`, each of their images is paired with the map's next one at a distance of half a metre or more instead. So are
-the frames of a walk in other light with those at noon; their set is `walk_<scene>`.
+/** Finds pairs in the folders of findViewFolders. An image is paired with the next three of its folder. If there is
+also a folder `map`, each image of the other folders is instead paired with the map's nearest image at least half a
+metre away. In the same way, frames of a walk under other light are paired with those at noon; their set is
+`walk_<scene>`.
 @throws cv::Exception as findViewFolders. */
 std::vector<ViewPair> findViewPairs(const std::vector<std::string>& roots);
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""Maps made by day and images found in them in other lights, by opencv_iib.localization and by SIFT in its place: measure.py DATA OUT
+"""Localizes images under other lights in a map made at noon, by opencv_iib.localization and by SIFT: measure.py DATA OUT
 
-DATA: what tools/synthetic/localization.py rendered. Photographs, of other places too, are in the folder that OPENCV_TEST_DATA_PATH
-names, if it is set. OUT gets results.json, world.js, pictures and a video, of which tools/pages makes the page. A place is a folder
-with images/, cameras.txt (COLMAP, one camera) and poses.txt (TUM: image, camera's centre, camera to world).
+DATA: output of tools/synthetic/localization.py. Photographs are read from OPENCV_TEST_DATA_PATH, if it is set. OUT receives
+results.json, world.js, pictures and a video, from which tools/pages makes the page. A place is a folder with images/, cameras.txt
+(COLMAP, one camera) and poses.txt (TUM: image, camera's centre, camera to world).
 """
 import argparse
 import csv
@@ -28,18 +28,18 @@ import pycolmap
 import opencv_iib
 from opencv_iib import _core
 from opencv_iib.localization import Camera, Localizer, build, update
-from sift import Found, Sift
+from sift import Location, Sift
 
 LIGHTS = ('night', 'dusk', 'winter', 'overcast', 'fog', 'morning', 'wet')
 POINTS = 2000  # an image
-FRAME, VIDEO, RATE = (400, 300), (640, 240), 4  # pixels of an image in a picture, of the video (noise makes it large); frames a second
-UNKNOWN = 200  # photographs of other places
-DRAWN = 6000  # points of the map
+FRAME, VIDEO, RATE = (400, 300), (640, 240), 4  # pixels of an image in a picture, of the small video; frames a second
+UNKNOWN = 200  # number of photographs of other places
+DRAWN = 6000  # approximate number of points of the map that are drawn
 SEASONS = ('morning', 'overcast', 'dusk')  # updates, in the order of a day
 
 
 def pose_of(numbers):
-    """Camera from world, 4 x 4, of a centre and a quaternion x y z w from the camera to the world."""
+    """Camera from world, 4 x 4, by a centre and a quaternion x y z w from the camera to the world."""
     numbers = np.array(numbers, float)
     sine = np.linalg.norm(numbers[3:6])
     turn = cv2.Rodrigues(numbers[3:6] * (2 * np.arctan2(sine, numbers[6]) / sine if sine else 2))[0].T
@@ -49,7 +49,7 @@ def pose_of(numbers):
 
 
 def read_place(folder, step=1):
-    """Camera, and 4 x 4 camera from world of every step-th image that is there, by file name."""
+    """The camera, and 4 x 4 poses (camera from world) of every step-th existing image, by file name."""
     lines = [line.split() for line in (folder / 'cameras.txt').read_text().splitlines() if not line.startswith('#')]
     poses = {}
     for line in (folder / 'poses.txt').read_text().splitlines():
@@ -60,20 +60,20 @@ def read_place(folder, step=1):
 
 
 def write_model(folder, camera, poses):
-    """A COLMAP model without points."""
+    """Writes a COLMAP model without points."""
     folder.mkdir(parents=True, exist_ok=True)
     _core.writeModel(folder, [_core.PosedImage(name, camera, pose, np.empty((0, 2))) for name, pose in poses.items()])
 
 
 def chain(folder, work, step=1):
-    """Localizer in a map of a place by the package, in the folder work/map."""
+    """A Localizer in the package's map of a place, in the folder work/map."""
     write_model(work / 'model', *read_place(folder, step))
     build(str(work / 'model'), str(folder / 'images'), str(work / 'map'), POINTS)
     return Localizer(work / 'map', POINTS)
 
 
 def sift(folder, work, step=1, *, normalized):
-    """Sift in a map of a place."""
+    """A Sift localizer in a map of a place."""
     write_model(work / 'model', *read_place(folder, step))
     return Sift(work / 'model', folder / 'images', POINTS, normalized)
 
@@ -83,16 +83,16 @@ METHODS = {'recommended chain': chain, 'SIFT, normalized image': functools.parti
 
 
 def error(found, truth):
-    """Centimetres and degrees."""
+    """Errors of position and rotation, centimetres and degrees."""
     turn = np.linalg.norm(cv2.Rodrigues(found[:3, :3] @ truth[:3, :3].T)[0])
     return 100 * float(np.linalg.norm((np.linalg.inv(found) - np.linalg.inv(truth))[:3, 3])), float(np.degrees(turn))
 
 
 def localize(localizer, folder, names=None, lit=lambda image, name: image):
-    """Of each image of a place: its name, location, error or None, and milliseconds of processor time."""
+    """Yields name, location, error or None, and milliseconds of processor time of each image of a place."""
     camera, poses = read_place(folder)
     for name in names or poses:
-        image = lit(cv2.imread(str(folder / 'images' / name), cv2.IMREAD_GRAYSCALE), name)  # as the programs read it
+        image = lit(cv2.imread(str(folder / 'images' / name), cv2.IMREAD_GRAYSCALE), name)
         begin = time.process_time()
         location = localizer.localize(image, camera)
         used = 1000 * (time.process_time() - begin)
@@ -101,13 +101,13 @@ def localize(localizer, folder, names=None, lit=lambda image, name: image):
 
 
 def relit(image, name):
-    """Darkened by gamma 2.2, a ramp to a quarter, half the light, noise."""
+    """Darkens an image by gamma 2.2, a ramp to a quarter and a factor of one half, and adds noise."""
     light = (image / 255) ** 2.2 * np.linspace(1, .25, image.shape[1]) * .5
     return np.clip(light * 255 + np.random.default_rng(sum(name.encode())).normal(0, 2, image.shape), 0, 255).astype(np.uint8)
 
 
 def summary(located):
-    """What the page tells of images in one light; the errors of those found are in order."""
+    """The page's statistics of images under one light; errors of found images are sorted."""
     errors = sorted(error for _, _, error, _ in located if error)
     within = {limit: sum(bool(cm <= limit and degrees <= turn) for cm, degrees in errors) for limit, turn in ((5, .5), (25, 2))}
     return {'images': len(located), 'found': len(errors), 'within_5': within[5], 'within_25': within[25],
@@ -117,7 +117,7 @@ def summary(located):
 
 
 def street(data, work, lights):
-    """Rows of all methods and lights, and of fewer keyframes; what the chain located, by light; its localizer."""
+    """Rows of all methods and lights, and of fewer keyframes; the chain's locations by light; the chain's localizer."""
     rows, seen, ours = [], {}, None
     for method, make in METHODS.items():
         localizer = make(data / 'map', work / method)
@@ -135,7 +135,7 @@ def street(data, work, lights):
 
 
 def run_command(known, images, out, options=()):
-    """The poses that `opencv-iib localize` finds of a folder's images in a map, by their names."""
+    """The poses of a folder's images in a map by `opencv-iib localize`, by file name."""
     subprocess.run([sys.executable, '-m', 'opencv_iib', 'localize', '--map', known, '--images', images / 'images', '--out', out, *options],
                    check=False, stdout=subprocess.DEVNULL)
     names = {image.stem: image.name for image in (images / 'images').iterdir()}
@@ -143,7 +143,7 @@ def run_command(known, images, out, options=()):
 
 
 def command(data, work, lights):
-    """Rows of `opencv-iib localize` in the chain's map, alone and where there is an IMU also with it; milliseconds of the whole run."""
+    """Rows of `opencv-iib localize` in the chain's map, with and without IMU readings; milliseconds are of the whole run."""
     rows = []
     for light, imu in itertools.product(lights, ('', ' --imu')):
         readings, out, poses = data / light / 'imu.csv', work / (light + imu), read_place(data / light)[1]
@@ -155,7 +155,7 @@ def command(data, work, lights):
         used = 1000 * (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / len(poses)
         errors = {name: error(pose, poses[name]) for name, pose in found.items()}
         with open(out / 'frames.csv', encoding='utf-8', newline='') as file:
-            located = [(row['name'], Found(inliers=int(row['inliers'])), errors.get(row['name']), used) for row in csv.DictReader(file)]
+            located = [(row['name'], Location(inliers=int(row['inliers'])), errors.get(row['name']), used) for row in csv.DictReader(file)]
         rows.append({'place': 'street', 'method': 'opencv-iib localize' + imu, 'light': light, **summary(located)})
     return rows
 
@@ -212,7 +212,7 @@ def scene(model, folder, seen):
 
 
 def pairs(model, folder, data, located):
-    """Of each image that was found: its number of inliers, and a picture of the nearest keyframe beside it."""
+    """Yields the number of inliers of each found image, and a picture of it beside the nearest keyframe."""
     camera = read_place(data)[0]
     for name, location, error, _ in located:
         if not error:
@@ -233,7 +233,7 @@ def pairs(model, folder, data, located):
 
 
 def write_pictures(out, light, drawn):
-    """The pair with the median number of inliers; of the night also all, as VP9, which browsers play."""
+    """Writes the pair with the median number of inliers; for the night also a VP9 video of all pairs."""
     in_order = sorted(drawn, key=lambda pair: pair[0])
     cv2.imwrite(str(out / (light + '.jpg')), in_order[len(in_order) // 2][1], [cv2.IMWRITE_JPEG_QUALITY, 70])
     if light == 'night':

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""Mean errors of `opencv-iib localize` in each light, with the paper's points, with lines and with an IMU: setups.py OUT.csv STREET
+"""Mean errors of `opencv-iib localize` under each light, with the paper's points, lines and an IMU: setups.py OUT.csv STREET
 
-Needs what measure.py needs. STREET: what tools/synthetic/localization.py rendered.
+STREET: output of tools/synthetic/localization.py. Dependencies: those of measure.py.
 """
 import collections
 import csv
@@ -21,7 +21,7 @@ SETUPS = ('', '--lines', '--orb-and-akaze', '--orb-and-akaze --lines')
 
 
 def error(found, truth):
-    """Centimetres to the right, ahead and down as the camera looks, and degrees."""
+    """Errors to the right, ahead and down in the camera's axes, centimetres, and of rotation, degrees."""
     right, down, ahead = 100 * np.abs((truth @ np.linalg.inv(found))[:3, 3])
     return right, ahead, down, np.degrees(np.linalg.norm(cv2.Rodrigues(truth[:3, :3] @ found[:3, :3].T)[0]))
 

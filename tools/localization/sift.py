@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 
-"""SIFT in the place of opencv_iib.localization, with the geometry of pycolmap."""
+"""A baseline for opencv_iib.localization: SIFT with the geometry of pycolmap."""
 import dataclasses
 import itertools
 import tempfile
@@ -12,13 +12,13 @@ import pycolmap
 
 import opencv_iib
 
-RATIO = .8  # of SIFT's distances
-COMPARED, MAX_ERROR, LEAST_INLIERS = 5, .006, 15  # images of the map; of the longer side; a pose
+RATIO = .8  # of the ratio test
+COMPARED, MAX_ERROR, LEAST_INLIERS = 5, .006, 15  # images of the map; share of the longer side; of a pose
 
 
 @dataclasses.dataclass
-class Found:
-    """What is told of an image: camera from world, 4 x 4, or None."""
+class Location:
+    """The pose of an image: camera from world, 4 x 4, or None."""
 
     cam_from_world: Any = None
     inliers: int = 0
@@ -37,7 +37,7 @@ def matched(a, b):
 
 
 def triangulated(model, places, matches):
-    """The model with points, by pycolmap from the model's poses: keypoints by image, and ids of two images with M x 2 indices of their keypoints."""
+    """The model with points that pycolmap triangulates. Arguments: keypoints by image; ids of two images and M x 2 indices of matches."""
     with tempfile.TemporaryDirectory() as folder:
         with pycolmap.Database.open(folder + '/database.db') as database:
             for camera in model.cameras.values():
@@ -59,10 +59,10 @@ def triangulated(model, places, matches):
 
 
 class Sift:
-    """In the place of Localizer: all pairs of the map's images are matched, and an image with each of them."""
+    """Has the interface of Localizer. Matches all pairs of the map's images, and a query image with each of them."""
 
     def __init__(self, model, images, points, normalized):
-        """In a map of a COLMAP model, in its folder."""
+        """Makes a map from the folder of a COLMAP model."""
         self._sift = cv2.SIFT_create(points)
         self._detector = opencv_iib.NormalizedDetector(self._sift) if normalized else self._sift
         model = pycolmap.Reconstruction(model)
@@ -88,5 +88,5 @@ class Sift:
         taken = pycolmap.Camera(model=camera.model, width=camera.width, height=camera.height, params=camera.params)
         pose = pycolmap.estimate_and_refine_absolute_pose(seen, points, taken, limit) if len(seen) >= LEAST_INLIERS else None
         if pose is None or pose['num_inliers'] < LEAST_INLIERS:
-            return Found()
-        return Found(np.concatenate([pose['cam_from_world'].matrix(), [[0, 0, 0, 1]]]), pose['num_inliers'])
+            return Location()
+        return Location(np.concatenate([pose['cam_from_world'].matrix(), [[0, 0, 0, 1]]]), pose['num_inliers'])

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""Whether Localizer is as right as it says: uncertainty.py OUT.csv FOLDER...
+"""Compares errors of Localizer with the reported covariances: uncertainty.py OUT.csv FOLDER...
 
-Needs what measure.py needs. Places as measure.py has them are looked for below the folders: those beside one called `map` in it; others in maps
-of their own images, each left out alone, with every other one and with every third. OUT.csv gets two rows an image, as of iib_evaluation's
-uncertainty: of the errors of the centre, in the unit of the poses, and of the rotation, in radians. Where nothing was found their count is 0.
+Dependencies: those of measure.py. Places in measure.py's layout are read below the folders. Places beside a folder `map` are localized in it.
+Others are localized in maps of their own other images: without each image alone, every other one and every third. OUT.csv receives two rows an
+image, as iib_evaluation's uncertainty: errors of the centre, in the poses' unit, and of the rotation, radians. Their count is 0 without a pose.
 """
 import csv
 import math
@@ -24,7 +24,7 @@ LEVELS = .1, .25, .5, .75, .9, .95, .99  # of confidence
 
 
 def searches(place):
-    """Name of a map, its folder and image names, and the names of the images of the place that are looked for."""
+    """Name of a map, its folder and image names, and the names of the images to localize."""
     own, beside = list(measure.read_place(place)[1]), place.parent / 'map'
     if (beside / 'poses.txt').exists():
         if place != beside:
@@ -36,7 +36,7 @@ def searches(place):
 
 
 def judged(error, covariance):
-    """Of an error: 1, whether it is within the limit of each level, the logarithms of the reported standard deviation and of its density."""
+    """1, whether an error is within the limit of each level, and the logarithms of the reported standard deviation and of the density."""
     squared, limit = error @ np.linalg.solve(covariance, error), opencv_iib.confidenceLimit
     deviation, twice = np.linalg.slogdet(covariance)[1] / 6, limit(.5, 2)  # the scale matrix, in parts of the covariance
     score = math.lgamma(2.5) - 1.5 * math.log(math.pi * twice) - 3 * deviation - 2.5 * math.log1p(squared / twice)
@@ -44,7 +44,7 @@ def judged(error, covariance):
 
 
 def errors(location, truth):
-    """Of the centre and of the rotation, in the world's axes, each with its covariance; none where nothing was found."""
+    """Errors of centre and rotation, in the world's axes, each with its covariance; nothing without a location."""
     if location.cam_from_world is None:
         return {}
     found, true = np.linalg.inv(location.cam_from_world), np.linalg.inv(truth)

@@ -1,14 +1,13 @@
 #!/usr/bin/python3
-"""Mutation testing: builds the library once with every mutant of mutants.txt switched off, then runs the tests with
-one of them switched on at a time: those of its area, which is a folder of modules/iib/test, another module, or
-MODULE/NAME for its test_NAME.cpp. A mutant that none of them notices is a survivor. One of code that the processor does
-not run is skipped.
+"""Mutation testing: builds the library once with all mutants of mutants.txt, then switches on one at a time and runs the tests of
+its area. An area is a folder of modules/iib/test, another module, or MODULE/NAME for its test_NAME.cpp. A mutant that no test
+notices is a survivor. Mutants of code that needs another processor are skipped.
 
 mutate.py --source REPOSITORY --work FOLDER [--only NAME...]
 mutate.py --source REPOSITORY --check
 
-It reads the sources, since it changes them: a mutant is an expression with a wrong one beside it. In a copy of the source both
-stand in IIB_MUTANT(number, right, wrong), and the environment variable IIB_MUTANT chooses at run time.
+A mutant replaces an expression by a wrong one. In a copy of the source both are in IIB_MUTANT(number, right, wrong), and the
+environment variable IIB_MUTANT chooses at run time.
 """
 import argparse
 import concurrent.futures
@@ -20,7 +19,7 @@ import subprocess
 import sys
 import time
 
-# A constant of each source file, which inner loops read faster than they could call a function.
+# A constant in each source file, since a function call would slow down inner loops.
 HEADER = """#pragma once
 #include <cstdlib>
 namespace {
@@ -31,13 +30,13 @@ const int iibChosenMutant = std::getenv("IIB_MUTANT") ? std::atoi(std::getenv("I
 
 
 def pattern(code):
-    """A regular expression that finds code however its lines are broken and its spaces set."""
+    """A regular expression that finds code with any spaces and line breaks."""
     return r"\s*".join(re.escape(token) for token in re.findall(r"\w+|\S", code))
 
 
 class Mutant:
-    """`sources`: the text of every source, by path. The mutant belongs to the one that holds its code, wherever that has
-    been moved; the tests of `area` are to notice it."""
+    """One line of mutants.txt; the tests of `area` must notice it. `sources`: the text of every source, by path; the mutant's
+    source is the one that holds its code."""
 
     def __init__(self, number, line, area, sources):
         fields = re.fullmatch(r"(\S+): (.*)\{\{(.+) => (.+)\}\}(.*)", line)
@@ -48,7 +47,7 @@ class Mutant:
         self.code = re.compile(r"(\s*)".join(f"({pattern(part)})" for part in (before, right, after)))
         found = [path for path, text in sources.items() for _ in self.code.finditer(text)]
         if len(found) != 1:
-            sys.exit(f"{self.name}: its code is in the sources {len(found)} times: bring mutants.txt up to date")
+            sys.exit(f"{self.name}: its code is in the sources {len(found)} times, not once: update mutants.txt")
         self.path, = found
 
     def applied(self, text):
@@ -66,8 +65,8 @@ def read_sources(repository):
 
 
 def read_mutants(path, sources):
-    """A mutant a line, `NAME: code {{right => wrong}} code`, below `[AREA]`, whose tests are to notice it, or below `[AREA FLAG]` if only
-    processors with this flag run the code."""
+    """Mutants `NAME: code {{right => wrong}} code`, one a line, below `[AREA]`, or `[AREA FLAG]` if only processors with
+    this flag run the code."""
     mutants, area = [], None
     for line in path.read_text().splitlines():
         if line.startswith("["):
@@ -78,14 +77,14 @@ def read_mutants(path, sources):
 
 
 def write_if_changed(path, content):
-    """A file that keeps its time is not compiled again."""
+    """Keeps the time of an unchanged file, so that it is not compiled again."""
     if not path.is_file() or path.read_bytes() != content:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content)
 
 
 def switched(sources, mutants):
-    """The content of the sources with the switches of all mutants, by path."""
+    """The text of the sources with the switches of all mutants, by path."""
     content = {}
     for mutant in mutants:
         content[mutant.path] = mutant.applied(content.get(mutant.path, sources[mutant.path]))
@@ -93,7 +92,7 @@ def switched(sources, mutants):
 
 
 def copy_source(repository, changed, target):
-    """A copy of the repository's files but for those that are `changed`."""
+    """Copies the repository's files, with the texts of the `changed` ones."""
     command = ["git", "-C", repository, "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     listed = subprocess.check_output(command).decode().split("\0")
     content = {name: (repository / name).read_bytes() for name in listed if (repository / name).is_file()}
@@ -110,13 +109,13 @@ def copy_source(repository, changed, target):
 
 
 def tests_of(area):
-    """The module whose tests are to notice what is wrong in `area`, and their files."""
+    """The module and the files of the tests of `area`."""
     module, _, name = area.partition("/")
     return (module, f"test_{name or '*'}.cpp") if module.startswith("iib_") else ("iib", f"{area}/*.cpp")
 
 
 def suites(source, area):
-    """A filter for the test suites of `area`."""
+    """A GoogleTest filter for the test suites of `area`."""
     names = set()
     module, files = tests_of(area)
     for path in sorted((source / "modules" / module / "test").rglob(files)):
@@ -129,10 +128,10 @@ def suites(source, area):
 
 def run_tests(program, suites, number, timeout):
     """Whether all tests of the suites pass, with all instruction sets and without the wide ones, whose kernels differ.
-    A crash, an abort or a hang counts as noticed."""
+    A crash, an abort or a timeout counts as noticed."""
     for off in ("", "AVX512-SKX,AVX512-ICL", "AVX2,AVX512-SKX,AVX512-ICL"):
         environment = dict(os.environ, IIB_MUTANT=str(number), OPENCV_CPU_DISABLE=off)
-        environment.pop("OPENCV_TEST_DATA_PATH", None)  # tests on photographs take long and are not everywhere
+        environment.pop("OPENCV_TEST_DATA_PATH", None)  # tests on photographs are slow, and not every machine has them
         try:
             run = subprocess.run([program, f"--gtest_filter={suites}", "--gtest_break_on_failure"], env=environment,
                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=timeout)
@@ -148,7 +147,7 @@ def main():
     parser.add_argument("--source", type=pathlib.Path, required=True, help="the repository")
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--work", type=pathlib.Path, help="folder for the copy and its build")
-    what.add_argument("--check", action="store_true", help="only see whether each mutant stands in the source, once, and has tests")
+    what.add_argument("--check", action="store_true", help="only check that each mutant's code is in the sources once, and has tests")
     parser.add_argument("--only", nargs="*", default=[], help="names of mutants; all by default")
     options = parser.parse_args()
 

@@ -1,4 +1,4 @@
-// The front of a block of flats, the same bay over and over; what people put on it tells places apart.
+// The front of a block of flats: one repeated bay, with objects of the residents that distinguish places.
 #version 3.7;
 #declare SunAzimuth = 230;
 #include "common.inc"

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Renders data to test visual localization with: the street mapped at noon, then visited under other
-lights on another path, with an IMU. See README.md."""
+"""Renders data for visual localization: a map of the street at noon, and another path through it under other
+lights, with IMU readings. See README.md."""
 
 import argparse
 import os
@@ -16,7 +16,7 @@ SCENE = "street"
 MAP_LIGHT = "noon"
 QUERY_LIGHTS = ["night", "dusk", "winter", "overcast", "fog", "morning", "wet"]
 KEYFRAMES, QUERIES, SIZE = 16, 30, (640, 480)  # pictures of the map, 1.4 m apart, and of each other light
-DURATION = 14.5  # seconds; at 1.4 m/s a walk as long as the mapped one
+DURATION = 14.5  # seconds; at 1.4 m/s this covers the mapped walk
 IMU_RATE = 200  # Hz
 GRAVITY = np.array([0, 9.81, 0])  # m/s^2, in the world of `extrinsics`: y points down
 # Noise densities of a good MEMS sensor, as EuRoC's sensor.yaml states them, and constant biases.
@@ -26,7 +26,7 @@ ACCEL_BIAS = np.array([0.03, -0.02, 0.04])  # m/s^2
 
 
 def visit(t):
-    """t: n times in seconds. n x 5 poses (x, y, z, yaw, pitch) as in scenes.py, smooth in time."""
+    """n x 5 poses (x, y, z, yaw, pitch) as in scenes.py, smooth in time, at n times t in seconds."""
     def wave(period, phase=0.0):
         return np.sin(2 * np.pi * t / period + phase)
     return np.stack([-0.2 + 0.7 * wave(10), 1.65 + 0.03 * wave(0.9), 0.5 + 1.38 * t + 0.1 * wave(4),
@@ -40,14 +40,14 @@ def camera_to_world(pose):
 
 
 def quaternion(rotation):
-    """x, y, z, w of a 3x3 rotation under half a turn."""
+    """x, y, z, w of a 3x3 rotation by less than 180 degrees."""
     axis = cv2.Rodrigues(rotation)[0].ravel()
     angle = np.linalg.norm(axis)
     return np.append(axis * np.sinc(angle / 2 / np.pi) / 2, np.cos(angle / 2))
 
 
 def tum(names, poses):
-    """The poses in TUM's format, camera to world."""
+    """Poses in TUM's format, camera to world."""
     lines = ["# name tx ty tz qx qy qz qw"]
     for name, pose in zip(names, poses):
         matrix = camera_to_world(pose)
@@ -66,7 +66,7 @@ def imu(seed):
     random = np.random.default_rng(seed)
     rows = []
     for time, a, b, c in zip(times, before, now, after):
-        change = a[:3, :3].T @ c[:3, :3]  # by so little that its skew part is the angle; cv2.Rodrigues would say 0
+        change = a[:3, :3].T @ c[:3, :3]  # so small that its skew part is the angle; cv2.Rodrigues would return 0
         turn = (change - change.T)[[2, 0, 1], [1, 2, 0]] / (4 * step)
         acceleration = (a[:3, 3] - 2 * b[:3, 3] + c[:3, 3]) / step ** 2
         force = b[:3, :3].T @ (acceleration - GRAVITY)
@@ -77,7 +77,7 @@ def imu(seed):
 
 
 def cameras(scene, size):
-    """COLMAP's cameras.txt, whose pixel centres lie at halves."""
+    """COLMAP's cameras.txt, with pixel centres at halves."""
     matrix = intrinsics(scene, *size)
     return ("# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n"
             f"1 PINHOLE {size[0]} {size[1]} {matrix[0, 0]:.9g} {matrix[1, 1]:.9g} "
@@ -91,7 +91,7 @@ def spread(count):
 
 
 def plan(out, keyframes, queries, lights, size):
-    """The tasks in the order of rendering; also writes the cameras, poses and IMU readings."""
+    """Yields the tasks in the order of rendering, and writes cameras, poses and IMU readings."""
     poses = walk(SCENES[SCENE].path, keyframes)
     names = [f"{k:04d}" for k in range(keyframes)]
     write_text(out / "map" / "cameras.txt", cameras(SCENE, size))
@@ -112,7 +112,7 @@ def plan(out, keyframes, queries, lights, size):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("out", type=pathlib.Path, help="folder to render into; what is there is kept")
+    parser.add_argument("out", type=pathlib.Path, help="output folder; existing pictures are kept")
     out = parser.parse_args().out
     tasks = list(plan(out, KEYFRAMES, QUERIES, QUERY_LIGHTS, SIZE))
     render_all(tasks, SIZE, os.cpu_count(), run_quickly)

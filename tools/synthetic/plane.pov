@@ -1,4 +1,4 @@
-// For the test: a wall of known distance, a ball of known place and a window of known size in it.
+// For tests: a wall at a known distance, a ball at a known position and a box of known size.
 #version 3.7;
 #include "common.inc"
 #declare SnowOn = 0;
@@ -7,7 +7,7 @@
     plane { z, 10 Surface(WALL, texture { pigment { rgb 0.2 } finish { ambient 0 diffuse 0 emission 1 } }) }
     box { <1, 0.5, 9>, <3, 1.5, 12>
         Surface(WINDOW, texture { pigment { rgb 0.5 } finish { ambient 0 diffuse 0 emission 1 } }) }
-    // turned and moved, as the depth of a thing must not be
+    // rotated and moved, which must not move its depth texture
     union {
         sphere { 0, 0.1 Surface(LAMP, texture { pigment { rgb 1 } finish { ambient 0 diffuse 0 emission 1 }
             }) }

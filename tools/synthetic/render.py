@@ -20,16 +20,16 @@ from scenes import LIGHTS, NOISE, NOISE_BY_DAY, SCENES, extrinsics, intrinsics, 
 HERE = pathlib.Path(__file__).resolve().parent
 DEPTH_SCALE = 0.004  # metres a step, as in common.inc
 IMAGE, DEPTH, LABELS = range(3)
-# One ray a pixel is quicker than smoothing, which the blur of a lens stands in for.
+# One ray a pixel and a blur are faster than antialiasing.
 ONE_RAY, BLUR = ["+FN8", "-A"], 0.6
 PATH_LIGHTS = ["noon", "dusk", "night", "winter"]  # of the walks
-ATTEMPTS = 3  # POV-Ray 3.7 sometimes ends by a signal; the same scene then renders
-# A ray through the middle of the pixel gives depth and label; a picture is smoothed, without chance.
+ATTEMPTS = 3  # POV-Ray 3.7 sometimes crashes, and renders the same scene at the next attempt
+# One ray through the pixel's centre gives depth and label; pictures are antialiased without random numbers.
 OUTPUT = {IMAGE: ["+FN8", "+A0.15", "+AM1", "+R2", "-J"], DEPTH: ["+FN16", "-A"], LABELS: ["+FN8", "-A"]}
 
 
 def povray(scene, mode, light, pose, size, output=None, seed=0):
-    """height x width x 3, BGR, 8U for a picture; height x width, 16U for depth and 8U for labels."""
+    """Renders height x width x 3, BGR, 8U for a picture; height x width, 16U for depth and 8U for labels."""
     width, height = size
     declared = dict(zip(("CamX", "CamY", "CamZ", "Yaw", "Pitch", "Roll"), [*pose, 0]), Mode=mode, Light=LIGHTS[light], Seed=seed,
                     Focal=intrinsics(scene, width, height)[0, 0])
@@ -39,7 +39,7 @@ def povray(scene, mode, light, pose, size, output=None, seed=0):
                    "+WT1", "-D", "-GD", "-GR", "-GS", "-GW", *(output or OUTPUT[mode]),
                    f"File_Gamma={'srgb' if mode == IMAGE else '1.0'}",
                    *(f"Declare={name}={value:.9g}" for name, value in declared.items())]
-        for _ in range(ATTEMPTS):  # in the scenes' folder, since it takes no path with a space
+        for _ in range(ATTEMPTS):  # in the scenes' folder, since povray accepts no path with a space
             done = subprocess.run(command, cwd=HERE, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
             if done.returncode >= 0:
                 break
@@ -51,14 +51,14 @@ def povray(scene, mode, light, pose, size, output=None, seed=0):
 
 
 def sensed(picture, scene, light, frame):
-    """A picture with the noise of a sensor, the same in every run."""
+    """A picture with sensor noise, the same in every run."""
     random = np.random.default_rng([zlib.crc32(scene.encode()), LIGHTS[light], frame])
     noise = random.standard_normal(picture.shape) * NOISE.get(light, NOISE_BY_DAY)
     return np.clip(np.rint(picture + noise), 0, 255).astype(np.uint8)
 
 
 def write(path, array):
-    """Written aside first, so that a file that is there is a whole one and an interrupted run can go on."""
+    """Writes a picture under another name first, so that an interrupted run leaves no incomplete file and can resume."""
     path.parent.mkdir(parents=True, exist_ok=True)
     aside = path.with_name("." + path.name)
     if not cv2.imwrite(str(aside), array):
@@ -67,7 +67,7 @@ def write(path, array):
 
 
 def write_text(path, text):
-    """Refuses a file that says otherwise, or old and new pictures would be mixed."""
+    """Writes a text, and refuses to change an existing one, so that old and new pictures are not mixed."""
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.exists() and path.read_text() != text:
         raise RuntimeError(f"{path} is of another size or walk: choose another folder")
@@ -89,8 +89,7 @@ def write_camera(path, scene, poses, size):
     write_text(path, storage.releaseAndGetString())
 
 
-# A file to be rendered, and where else it belongs: light moves nothing, so that depth and labels are of
-# a pose, not of a picture.
+# A file to render, and where to copy it: depth and labels are the same for all lights at a pose.
 Task = namedtuple("Task", "target scene mode light pose frame copies seed", defaults=[0])
 
 
@@ -114,7 +113,7 @@ def run_quickly(task, size):
 
 
 def still(folder, scene, size):
-    """One pose, every light: a sequence 1.png..N.png with the identity for H_1_k."""
+    """Tasks of one pose under every light: a sequence 1.png..N.png with identities H_1_k."""
     pose, lights = SCENES[scene].still, SCENES[scene].lights
     numbers = range(1, len(lights) + 1)
     for k in numbers[1:]:
@@ -128,7 +127,7 @@ def still(folder, scene, size):
 
 
 def walked(folders, scene, size, frames):
-    """folders: {light: folder}, the same walk under each. Pictures lie in frames/, since they have no H."""
+    """Tasks of one walk under each light of folders ({light: folder}). Pictures are in frames/, without H_1_k."""
     poses = walk(SCENES[scene].path, frames)
     first, *others = folders.values()
     for light, folder in folders.items():
@@ -154,7 +153,7 @@ def plan(out, scenes, frames, size):
 
 
 def start(main):
-    """Runs a command; what a person can put right is one line."""
+    """Runs a command; errors that a user can correct become one line."""
     try:
         main()
     except (RuntimeError, OSError) as error:
@@ -169,21 +168,21 @@ def render_all(tasks, size, jobs, run_task=run):
             futures = [pool.submit(run_task, task, size) for task in tasks]
             for done, future in enumerate(concurrent.futures.as_completed(futures), 1):
                 print(f"[{done}/{len(tasks)}] {future.result()}", flush=True)
-        except BaseException:  # Ctrl-C as well: what waits is dropped, what runs is finished
+        except BaseException:  # also Ctrl-C: waiting tasks are dropped, running ones finish
             pool.shutdown(cancel_futures=True)
             raise
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("out", type=pathlib.Path, help="folder to render into; what is there is kept")
+    parser.add_argument("out", type=pathlib.Path, help="output folder; existing pictures are kept")
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), metavar="SCENE",
                         help=f"some of: {', '.join(SCENES)} (all)")
     parser.add_argument("--frames", type=int, default=0,
                         help="also render walks of this many frames (0: none)")
     parser.add_argument("--size", type=int, nargs=2, default=(640, 480), metavar=("WIDTH", "HEIGHT"))
     parser.add_argument("--quick", action="store_true",
-                        help="one ray a pixel and the blur of a lens instead of smoothing")
+                        help="one ray a pixel and a blur instead of antialiasing")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
     options = parser.parse_args()
     if options.frames < 0 or min(options.size) < 16 or options.jobs < 1:

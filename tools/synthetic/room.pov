@@ -137,7 +137,7 @@
 #if (Mode = IMAGE)
     SunLight()
     SkyAndFog()
-    // the sky as the window lets it in, and what walls and floor throw back
+    // the sky through the window, and the reflection of walls and floor
     #local Sky = DomeLight * (0.6 * Horizon + 0.4 * Zenith);
     light_source {
         <-HalfWidth - 0.35, 1.65, 3.1> rgb 15 * Sky / (0.6 + DomeLight) fade_distance 1.2 fade_power 2
@@ -147,7 +147,7 @@
         <-0.8, 1.3, 2.4> rgb 0.8 * Sky + 0.08 * SunColour + 0.14 * LampsOn * <1, 0.8, 0.55>
         fade_distance 3 fade_power 1 shadowless
     }
-    // the patch of sun on floor or wall throws light upward
+    // the reflection of the sunlit patch on floor or wall
     light_source {
         <-1.5 + 2.4 * (SunHeight < 30), 0.3, 2.6> rgb 0.9 * SunColour fade_distance 1.4 fade_power 1
         area_light 0.8 * x, 0.8 * z, 3, 3 adaptive 1

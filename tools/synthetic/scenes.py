@@ -1,19 +1,19 @@
-"""The scenes: where the camera stands, how it walks, and the lights in the order of the pictures."""
+"""The scenes: poses, walks, and lights in the order of the pictures."""
 
 from collections import namedtuple
 
 import numpy as np
 
-# Numbers as in lights.inc. The reference, picture 1, is noon.
+# Numbers as in lights.inc. The reference (picture 1) is noon.
 LIGHTS = {"noon": 1, "morning": 2, "dusk": 3, "night": 4, "overcast": 5, "fog": 6, "winter": 7, "wet": 8,
           "snow": 9}
 
-# Standard deviation of the sensor's noise in grey levels: little light, much gain.
+# Standard deviation of the sensor's noise, grey levels; darkness needs more gain.
 NOISE = {"night": 6.0, "dusk": 4.0, "fog": 3.0, "wet": 2.0}
 NOISE_BY_DAY = 1.2
 
-# A camera stands at x, y, z (metres; x right, y up, z forward) and looks along yaw (degrees from +z
-# towards +x) and pitch (degrees upward). A sixth number is the roll, degrees clockwise; without it, the camera is level.
+# Poses have the position x, y, z (metres; x right, y up, z forward), yaw (degrees from +z towards +x), pitch (degrees upward)
+# and, optionally, roll (degrees clockwise).
 Scene = namedtuple("Scene", "focal still path lights")  # focal length in picture widths
 
 OUTDOOR = ["noon", "morning", "dusk", "night", "overcast", "fog", "winter"]
@@ -45,13 +45,13 @@ def walk(waypoints, frames):
 
 
 def intrinsics(scene, width, height):
-    """3x3 camera matrix in pixels; pixel centres have whole coordinates, as everywhere in OpenCV."""
+    """3x3 camera matrix in pixels; pixel centres have integer coordinates, as in OpenCV."""
     focal = SCENES[scene].focal * width
     return np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1.0]])
 
 
 def extrinsics(pose):
-    """3x4 [R|t] from the world (x right, y DOWN, z forward: the scene files' y negated) to the camera."""
+    """3x4 [R|t] from the world (x right, y down, z forward: the scene files' y is negated) to the camera."""
     yaw, pitch, roll = np.radians([*pose[3:], 0][:3])
     forward = np.array([np.sin(yaw) * np.cos(pitch), np.sin(pitch), np.cos(yaw) * np.cos(pitch)])
     level = np.array([np.cos(yaw), 0, -np.sin(yaw)])

@@ -27,7 +27,7 @@
     union {
         Facade(Width, Floors, Columns, 3.3, FloorHeight, Wall, Trim, Frame, Shutter, Lit)
         Shop(Width, 3.3, Name, Wall, Tint, int(Lit + 0.65))
-        // its sides, where the neighbour is lower
+        // its sides, visible above a lower neighbour
         box { <0, 0, 0.39>, <0.2, 3.3 + Floors * FloorHeight, 9> Surface(WALL, Wall) }
         box { <Width - 0.2, 0, 0.39>, <Width, 3.3 + Floors * FloorHeight, 9> Surface(WALL, Wall) }
         box { <0.19, 0, 1>, <Width - 0.19, 3.2 + Floors * FloorHeight, 9> Surface(WALL, Wall) }

@@ -69,7 +69,7 @@
     normal { granite 0.8 scale 0.2 }
     GroundFinish(0.3)
 }
-// The path, wavering, among the grass; rock where it is steep.
+// A winding path in the grass; rock on steep slopes.
 #declare Ground = texture {
     pigment_pattern {
         function { max(0, 1 - abs(x - 4 * sin(0.045 * (z + 6) - 0.4) - 0.3 * sin(0.9 * z)) / 3) }
@@ -81,7 +81,7 @@
     }
 }
 
-// A boulder of radius 1: a ball pushed in and out, as a mesh.
+// A boulder of radius 1: a deformed ball, as a mesh.
 #declare Bumpy = function { pigment { granite scale 2.6 color_map { [0 rgb 0] [1 rgb 1] } } }
 #macro Boulder(Seed)
     #local N = 14;

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of localization.py: poses, cameras and IMU readings agree, and an interrupted run covers the whole walk."""
+"""Tests of localization.py: poses, cameras and IMU readings are consistent, and an interrupted run covers the whole walk."""
 
 import pathlib
 import sys
@@ -34,10 +34,10 @@ class Poses(unittest.TestCase):
             np.testing.assert_allclose(back[:, :3] @ turn, np.eye(3), atol=1e-7)
             np.testing.assert_allclose(back[:, :3] @ centre + back[:, 3], 0, atol=1e-6)
 
-    def test_imu_readings_lead_along_the_path(self):
+    def test_imu_readings_integrate_to_the_path(self):
         rows = np.loadtxt(localization.imu(4).splitlines()[1:], delimiter=",")
         times = rows[:, 0] * 1e-9
-        for start in range(0, len(rows) - 200, 200):  # each second, from where the motion of the path is known
+        for start in range(0, len(rows) - 200, 200):  # integrates each second from the path's exact state
             before, here, after = (localization.camera_to_world(pose)
                                    for pose in localization.visit(times[start] + np.array([-1e-4, 0, 1e-4])))
             place, velocity, turn = here[:3, 3].copy(), (after - before)[:3, 3] / 2e-4, here[:3, :3].copy()
@@ -55,12 +55,12 @@ class Poses(unittest.TestCase):
 
 
 class Plan(unittest.TestCase):
-    def test_every_place_once_and_coarse_steps_first(self):
+    def test_spread_is_a_permutation_with_coarse_steps_first(self):
         for count in (2, 7, 30):
             self.assertEqual(sorted(localization.spread(count)), list(range(count)))
         self.assertEqual(localization.spread(8)[:4], [0, 4, 2, 6])
 
-    def test_what_is_written_and_what_is_to_be_rendered(self):
+    def test_files_and_tasks(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder)
             tasks = list(localization.plan(out, 3, 5, ["night", "fog"], (64, 48)))
@@ -71,7 +71,7 @@ class Plan(unittest.TestCase):
             for name in names:
                 self.assertIn(f"night/images/{name}.png", targets)
             self.assertEqual(float(names[-1]), localization.DURATION)
-            # the centre of 64 x 48 pixels in COLMAP's counting
+            # the centre of 64 x 48 pixels in COLMAP's convention
             self.assertEqual((out / "map" / "cameras.txt").read_text().split()[-2:], ["32", "24"])
             with self.assertRaisesRegex(RuntimeError, "choose another folder"):
                 list(localization.plan(out, 3, 5, ["night"], (32, 24)))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The renderer against geometry known by construction: depth, labels, cameras, files, repeatability."""
+"""Tests of the renderer against known geometry: depth, labels, cameras, files, repeatability."""
 
 import importlib.util
 import pathlib
@@ -35,7 +35,7 @@ def render_plane(mode, pose):
 
 
 def project(point, pose):
-    """Pixel and depth of a point given in the scene file's axes, by the camera that is written for users."""
+    """Pixel and depth of a point in the scene file's axes, by the camera of camera.yml."""
     camera = scenes.extrinsics(pose) @ [point[0], -point[1], point[2], 1]
     return (scenes.intrinsics("plane", *SIZE) @ camera)[:2] / camera[2], camera[2]
 
@@ -48,7 +48,7 @@ class KnownGeometry(unittest.TestCase):
             depth = render_plane(render.DEPTH, pose)
             self.assertEqual(depth.dtype, np.uint16)
             wall = render_plane(render.LABELS, pose) == WALL
-            # the ray of each pixel, cut with z = 10
+            # the intersection of each pixel's ray with z = 10
             inverse = np.linalg.inv(scenes.intrinsics("plane", *SIZE))
             x, y = np.meshgrid(range(SIZE[0]), range(SIZE[1]))
             rays = np.stack([x, y, np.ones_like(x)], axis=-1) @ inverse.T
@@ -58,7 +58,7 @@ class KnownGeometry(unittest.TestCase):
             error = np.abs(depth * render.DEPTH_SCALE - expected)[wall]
             self.assertLess(error.max(), render.DEPTH_SCALE)
 
-    def test_a_point_appears_where_the_camera_file_says(self):
+    def test_a_point_appears_where_the_camera_projects_it(self):
         for pose in self.poses:
             pixel, distance = project((-2, 1, 6), pose)
             lamp = render_plane(render.LABELS, pose) == LAMP
@@ -68,7 +68,7 @@ class KnownGeometry(unittest.TestCase):
             nearest = render_plane(render.DEPTH, pose)[lamp].min() * render.DEPTH_SCALE
             self.assertAlmostEqual(nearest, distance - 0.1, delta=0.015)
 
-    def test_a_crash_is_tried_again(self):
+    def test_rendering_is_repeated_after_a_crash(self):
         with tempfile.TemporaryDirectory() as folder:
             program, crashed = pathlib.Path(folder) / "povray", pathlib.Path(folder) / "crashed"
             program.write_text(f'#!/bin/sh\n[ -e {crashed} ] || {{ touch {crashed}; kill -SEGV $$; }}\n'
@@ -84,7 +84,7 @@ class KnownGeometry(unittest.TestCase):
         labels = render_plane(render.LABELS, pose)
         self.assertEqual(set(np.unique(labels)), {WALL, WINDOW, LAMP})
         focal = scenes.intrinsics("plane", *SIZE)[0, 0]
-        # the front of the box, 2 m x 1 m at 9 m, and what the wall leaves of its left side
+        # the front of the box, 2 m x 1 m at 9 m, and the visible part of its left side
         front = 2 * focal / 9 * 1 * focal / 9
         side = (1 / 9 - 1 / 10) * focal * 0.5 * (1 / 9 + 1 / 10) * focal
         self.assertAlmostEqual((labels == WINDOW).sum(), front + side, delta=0.03 * front)
@@ -93,9 +93,9 @@ class KnownGeometry(unittest.TestCase):
 
 
 class Scenes(unittest.TestCase):
-    """Random details come in the same order under every light and in every mode."""
+    """Random details must be the same under every light and in every mode."""
 
-    def test_light_moves_nothing_and_the_sky_has_neither_depth_nor_label(self):
+    def test_light_changes_no_geometry_and_the_sky_has_no_depth_or_label(self):
         for name in ("street", "room", "facade", "terrain"):
             scene = scenes.SCENES[name]
             self.assertGreaterEqual(len(scene.lights), 8)
@@ -110,7 +110,7 @@ class Scenes(unittest.TestCase):
             self.assertGreater(len(np.unique(depth)), 300)
 
 
-    def test_a_seed_makes_another_instance_and_always_the_same(self):
+    def test_a_seed_makes_a_different_but_repeatable_instance(self):
         for name in ("street", "room", "facade", "terrain"):
             still = scenes.SCENES[name].still
             first, second, again = (render.povray(name, render.LABELS, "noon", still, (80, 60), seed=seed)
@@ -118,7 +118,7 @@ class Scenes(unittest.TestCase):
             np.testing.assert_array_equal(second, again, name)
             self.assertGreater((first != second).mean(), 0.02, name)
 
-    def test_views_lie_near_the_walk_in_folders_that_the_evaluation_reads(self):
+    def test_views_are_near_the_walk_in_the_evaluations_layout(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder)
             tasks = list(views.plan(out, ["room"], [1, 2], (64, 48)))
@@ -131,7 +131,7 @@ class Scenes(unittest.TestCase):
 
 
 class Command(unittest.TestCase):
-    """One scene, 24 x 18 pixels, through the command itself."""
+    """The command with one scene of 24 x 18 pixels."""
 
     def render(self, folder, *options):
         return subprocess.run([sys.executable, HERE / "render.py", folder, "--scenes", "facade",
@@ -162,14 +162,14 @@ class Command(unittest.TestCase):
                 poses = storage.getNode("poses")
                 self.assertEqual(poses.size(), count)
                 self.assertEqual(poses.at(0).mat().shape, (3, 4))
-            # what is missing is rendered again, to the same bytes; what is there is left alone
+            # missing files are rendered again with the same bytes; existing files are unchanged
             bytes_before = (still / "4.png").read_bytes()
             (still / "4.png").unlink()
             stamp = (still / "1.png").stat().st_mtime_ns
             self.assertEqual(self.render(out).returncode, 0)
             self.assertEqual((still / "4.png").read_bytes(), bytes_before)
             self.assertEqual((still / "1.png").stat().st_mtime_ns, stamp)
-            # but not to another size, which would mix two sets in one folder
+            # another size is refused, since it would mix two sets in one folder
             mixed = self.render(out, "--size", "32", "24")
             self.assertEqual(mixed.returncode, 1)
             self.assertIn("choose another folder", mixed.stderr)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Renders views to judge poses on: other instances of each kind of scene, noon against other lights. See README.md."""
+"""Renders views to measure the accuracy of poses: other instances of the scenes, noon against other lights. See README.md."""
 
 import argparse
 import os
@@ -13,12 +13,12 @@ from scenes import SCENES, extrinsics, walk
 
 LIGHTS = ["night", "dusk", "winter"]
 MAP_VIEWS, VIEWS = 5, 3  # pictures at noon along the walk, and of each other light beside it
-# Of the places of the other lights around the walk: metres to the side and upward, degrees of yaw and pitch.
+# Largest offsets of the other lights' views from the walk: metres to the side and upward, degrees of yaw and pitch.
 BESIDE = [0.4, 0.1, 5, 2]
 
 
 def beside(scene, light, seed):
-    """VIEWS x 5: poses near the walk, others for each light and seed."""
+    """VIEWS x 5: poses near the walk, different for each light and seed."""
     random = np.random.default_rng([seed, LIGHTS.index(light)])
     poses = walk(SCENES[scene].path, 100)[np.sort(random.choice(100, VIEWS, replace=False))]
     poses[:, [0, 1, 3, 4]] += random.uniform(-1, 1, (VIEWS, 4)) * BESIDE
@@ -26,7 +26,7 @@ def beside(scene, light, seed):
 
 
 def nearer(poses, metres, roll):
-    """N x 6: poses moved along their view, with a roll in degrees."""
+    """N x 6: poses moved along their optical axes, with a roll in degrees."""
     forward = np.array([extrinsics(pose)[2, :3] for pose in poses]) * [1, -1, 1]
     return np.column_stack([poses[:, :3] + metres * forward, poses[:, 3:], np.full(len(poses), roll)])
 
@@ -49,15 +49,15 @@ def plan(out, scenes, seeds, size, lights=tuple(LIGHTS), moved=()):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("out", type=pathlib.Path, help="folder to render into; what is there is kept")
+    parser.add_argument("out", type=pathlib.Path, help="output folder; existing pictures are kept")
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), metavar="SCENE",
                         help=f"some of: {', '.join(SCENES)} (all)")
     parser.add_argument("--seed", nargs="+", type=int, default=[1, 2, 3],
-                        help="of the instances; 0 is the scene of the other programs (1 2 3)")
+                        help="seeds of the instances; 0 is the scene of the other programs (1 2 3)")
     parser.add_argument("--lights", nargs="*", choices=LIGHTS, default=LIGHTS, metavar="LIGHT",
                         help=f"other than noon: some of {', '.join(LIGHTS)} (all)")
     parser.add_argument("--nearer", nargs=2, type=float, action="append", default=[], metavar=("METRES", "ROLL"),
-                        help="a folder nearer, with the views of map as they are and moved forward, rolled clockwise; may be repeated")
+                        help="adds a folder nearer: the views of map, and the same moved forward and rolled clockwise; may be repeated")
     parser.add_argument("--size", type=int, nargs=2, default=SIZE, metavar=("WIDTH", "HEIGHT"))
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
     options = parser.parse_args()

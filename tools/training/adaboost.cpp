@@ -9,11 +9,11 @@ namespace {
 
 const int MOST_POSITIVES = 20000, BITS_A_QUAD = 4;
 
-//! Differing bits of every quad in every sample; the first half of the samples are partners.
+//! Number of differing bits of each quad in each sample; the first half of the samples are partners.
 struct Samples
 {
     int count;
-    cv::Mat_<uchar> distances;  //!< a row a quad
+    cv::Mat_<uchar> distances;  //!< one row a quad
 };
 
 Samples drawSamples(const CandidatePool& pool, const std::vector<DescribedPair>& pairs, uint64 seed)
@@ -44,7 +44,7 @@ Samples drawSamples(const CandidatePool& pool, const std::vector<DescribedPair>&
 struct Weak
 {
     int quad, threshold;
-    double error;  // weighted, of all samples
+    double error;  // weighted, over all samples
 };
 
 Weak bestThreshold(const Samples& samples, const std::vector<double>& weights, int quad)
@@ -55,7 +55,7 @@ Weak bestThreshold(const Samples& samples, const std::vector<double>& weights, i
     for (double weight : same)
         error += weight;
     Weak best = {quad, -1, 2};
-    // At the largest threshold it would say "same" of all, which needs no quad.
+    // The largest threshold is skipped: it would classify all samples as "same".
     for (int threshold = 0; threshold < BITS_A_QUAD; threshold++)
     {
         error += other[threshold] - same[threshold];

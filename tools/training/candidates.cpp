@@ -14,7 +14,7 @@ namespace {
 
 using namespace cv::iib;
 
-//! In the order of a descriptor's bits, so that a quad's place is that of its bits.
+//! All quads in the order of their bits in a descriptor.
 cv::Mat_<int> allQuads(const PoolParameters& p, int mask)
 {
     cv::Mat_<int> quads(0, 5);
@@ -46,11 +46,11 @@ void addQuads(const PoolParameters& p, CandidatePool& pool)
     pool.quads = allQuads(p, (1 << bits) - 1);
     pool.extractor->setSelection(pool.quads);
 
-    int start = 0;  // bit at which a row of planes begins
+    int start = 0;  // first bit of a row of planes
     for (int first = 0; first < pool.quads.rows;)
     {
         if (first > 0 && pool.quads(first, 0) != pool.quads(first - 1, 0))
-            start = (start + 7) / 8 * 8;  // levels begin with a byte
+            start = (start + 7) / 8 * 8;  // a level begins at a whole byte
         int last = first;
         while (last < pool.quads.rows && inOneRow(pool.quads[first], pool.quads[last]))
             last++;

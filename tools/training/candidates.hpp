@@ -7,18 +7,18 @@
 
 namespace iib_tools {
 
-//! What a selection is drawn from.
+//! Parameters of the pool from which a selection is learned.
 struct PoolParameters
 {
     int channels, mapping, granularity;  //!< as in IIBDescriptorExtractor::create
-    float scale;  //!< side of the ROS in units of KeyPoint::size, which is the ROS of the evaluation's fixed points
-    /** Where a level's quads begin, coarse first, the last number for all finer levels too: a sum of 1 (even rows and
-    columns), 2 (even rows, odd columns), 4 (odd rows, even columns) and 8 (odd rows and columns). */
+    float scale;  //!< side of the ROS over KeyPoint::size, which is the ROS of the evaluation's fixed points
+    /** Positions of each level's quads, coarse first; the last number holds for all finer levels. A sum of 1 (even rows
+    and columns), 2 (even rows, odd columns), 4 (odd rows, even columns) and 8 (odd rows and columns). */
     std::vector<int> windows;
-    int border;  //!< IIBDescriptorExtractor::Border of the regions that are trained on
+    int border;  //!< IIBDescriptorExtractor::Border of the training regions
 };
 
-//! What is chosen or not: one bit of a quad.
+//! One bit of a quad, which the selection may contain.
 struct Candidate
 {
     int quad;      //!< row of CandidatePool::quads
@@ -29,12 +29,12 @@ struct Candidate
 //! All quads of an extractor, described at once.
 struct CandidatePool
 {
-    cv::Mat_<int> quads;                                 //!< all of them, as setSelection takes them
-    cv::Ptr<cv::iib::IIBDescriptorExtractor> extractor;  //!< with all of them selected
-    std::vector<Candidate> candidates;                   //!< by level, then by place
+    cv::Mat_<int> quads;                                 //!< all quads, in the format of setSelection
+    cv::Ptr<cv::iib::IIBDescriptorExtractor> extractor;  //!< with all quads selected
+    std::vector<Candidate> candidates;                   //!< by level, then by position
 
     int level(const Candidate& candidate) const { return quads(candidate.quad, 0); }
-    //! Same level, channel and bit, and the quads touch or overlap: such bits repeat each other.
+    //! Whether level, channel and bit are equal and the quads touch or overlap: such bits are redundant.
     bool areNeighbours(const Candidate& a, const Candidate& b) const;
 };
 
@@ -42,7 +42,7 @@ int countBits(int mask);
 
 CandidatePool makePool(const PoolParameters& parameters);
 
-//! The rows for setSelection, by level, channel and place, the chosen bits of a quad in one mask.
+//! The rows for setSelection, by level, channel and position, with one mask of the chosen bits a quad.
 cv::Mat_<int> selectionOf(const CandidatePool& pool, const std::vector<int>& chosen);
 
 //! The pool's extractor with that selection.

@@ -27,7 +27,7 @@ cv::KeyPoint projected(const Sample& sample, cv::KeyPoint point)
     return point;
 }
 
-//! Row in the reference, row in the target; the nearest ones first, no row twice.
+//! Pairs of rows in reference and target, nearest first; each row is used once.
 std::vector<std::pair<int, int>> partnersAmong(
         const std::vector<cv::KeyPoint>& reference, const std::vector<cv::KeyPoint>& target)
 {

@@ -9,9 +9,9 @@
 namespace iib_tools {
 namespace {
 
-typedef std::array<int, 8> Levels;  // indexed by level, 0 and 7 stay empty
+typedef std::array<int, 8> Levels;  // indexed by level; 0 and 7 are unused
 
-//! Whole bytes nearest to the wanted numbers, within what the pool has and `most` in all.
+//! The whole bytes nearest to the wanted numbers of bits, limited by the pool and by `most` in all.
 Levels roundLevels(const Levels& wanted, const Levels& available, int most)
 {
     Levels rounded = {}, order = {};
@@ -54,7 +54,7 @@ std::vector<int> fillBytes(const CandidatePool& pool, const std::vector<int>& ch
         available[pool.level(pool.candidates[i])] += isChosen[i] || benefit[i] > 0;
     Levels left = roundLevels(wanted, available, bits);
 
-    // the chosen ones first, then the others, each by benefit
+    // chosen candidates first, then the others, each by benefit
     std::vector<int> order(pool.candidates.size()), filled;
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),

@@ -12,7 +12,7 @@ namespace {
 const int ANCHORS_A_PAIR = 100, PAIRS_A_STEP = 40, NEGATIVES = 15;
 const float SAME_POINT = 3;  // pixels; the evaluation calls such a match correct
 
-//! The given bits of every row, packed anew.
+//! The given bits of every row, packed again.
 cv::Mat gather(const cv::Mat& descriptors, const std::vector<int>& positions)
 {
     cv::Mat packed = cv::Mat::zeros(descriptors.rows, int(positions.size() + 7) / 8, CV_8U);
@@ -26,7 +26,7 @@ cv::Mat gather(const cv::Mat& descriptors, const std::vector<int>& positions)
     return packed;
 }
 
-//! Adds the weight to the sum of every bit in which the two descriptors differ.
+//! Adds a weight to the sums of all bits in which two descriptors differ.
 void addDifferences(const uchar* a, const uchar* b, int bytes, float weight, std::vector<float>& sums)
 {
     static const std::vector<float> masks = [] {
@@ -60,14 +60,14 @@ public:
             CV_Error(cv::Error::StsBadArg, "no pair has enough points to train on");
     }
 
-    //! Falling speed of the loss along each candidate, on fresh anchors.
+    //! The negative derivative of the loss along each candidate, on new anchors.
     std::vector<double> benefits(const std::vector<int>& chosen)
     {
         std::vector<int> positions;
         for (int i : chosen)
             positions.push_back(pool.candidates[i].position);
         if (positions.empty())
-            positions.push_back(pool.candidates[0].position);  // any bit: all points are equally near
+            positions.push_back(pool.candidates[0].position);  // any bit, since all points are equally near
         sums.assign(size_t(pool.extractor->descriptorSize()) * 8, 0.f);
         const float temperature = 0.25f * std::sqrt(std::max(float(positions.size()), 24.f));
         for (int i = 0; i < PAIRS_A_STEP; i++)
@@ -103,7 +103,7 @@ private:
                     pair.ratio, temperature);
     }
 
-    //! @param points of `to`. @param place of the anchor.
+    //! @param points of `to`. @param place position of the anchor.
     void addAnchor(const std::vector<cv::Point2f>& points, cv::Point2f place, const cv::Mat& from,
             const cv::Mat& to, int anchor, const int* distances, float ratio, float temperature)
     {
@@ -123,7 +123,7 @@ private:
             sum += odds[k];
         }
         const float p = 1 / (1 + sum);
-        const float slope = p * std::sqrt(p) / temperature;  // of the loss, along one unit of odds
+        const float slope = p * std::sqrt(p) / temperature;  // derivative of the loss by the odds
         addDifferences(from.ptr(anchor), to.ptr(anchor), from.cols, -slope * sum, sums);
         for (int k = 0; k < NEGATIVES; k++)
             addDifferences(
@@ -133,10 +133,10 @@ private:
     const CandidatePool& pool;
     cv::RNG rng;
     std::vector<std::vector<const DescribedPair*>> scenes;
-    std::vector<float> sums;  // one a bit of the pool's descriptor
+    std::vector<float> sums;  // one for each bit of the pool's descriptor
 };
 
-//! Adds at most `count` of the best candidates that are not chosen, no neighbours among them.
+//! Adds at most `count` of the best candidates that are not yet chosen and not neighbours of each other.
 void addBest(const CandidatePool& pool, const std::vector<double>& benefits, int count,
         std::vector<bool>& isChosen, std::vector<int>& chosen)
 {
@@ -172,7 +172,7 @@ std::vector<int> selectGreedily(const CandidatePool& pool, const std::vector<Des
     std::vector<int> chosen;
     while (int(chosen.size()) < bits)
     {
-        // a twelfth at a time: the more bits there are, the less each step changes the distances
+        // a twelfth at a time: with more bits, each step changes distances less
         const int count = std::min(std::max(1, int(chosen.size()) / 12), bits - int(chosen.size()));
         addBest(pool, growth.benefits(chosen), count, isChosen, chosen);
         progress(int(chosen.size()), bits);

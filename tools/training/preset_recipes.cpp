@@ -10,18 +10,18 @@ std::vector<Recipe> presetRecipes()
     const int gradients = IIB::CHANNEL_GRAD_X + IIB::CHANNEL_GRAD_Y + IIB::CHANNEL_SIGNED_GRAD_X +
                           IIB::CHANNEL_SIGNED_GRAD_Y;
     const int values = IIB::CHANNEL_GRAD_X + IIB::CHANNEL_GRAD_Y + IIB::CHANNEL_INTENSITY;
-    // Quads were learned before BORDER_REFLECT was the default, and keep their bits.
+    // Quads were learned before BORDER_REFLECT became the default; their bits must not change.
     const int zeros = IIB::BORDER_CLAMP;
-    // the default's quads but those of the orientation, whose bits are seldom worth what it costs to compute
+    // the default's quads without the orientation channel, which is seldom worth its time
     const PoolParameters paper = {values, IIB::MAPPING_MEAN, 4, 1.f, {1}, zeros};
-    // a wider ROS pays while the camera stands still; at 1.25 sums over its cells still have 16 bits
+    // a wider ROS helps for static cameras; at 1.25 the sums of its cells still fit 16 bits
     const PoolParameters still = {gradients, IIB::MAPPING_HAAR, 4, 1.25f, {1}, zeros};
     PoolParameters accurate = still;
     accurate.mapping = IIB::MAPPING_PAIRWISE;
-    // coarse quads stand a moved camera: level 2 begins them at every cell; a fourth channel costs next to nothing
+    // coarse quads tolerate a moved camera, so level 2 has them at every cell; a fourth channel costs almost no time
     const PoolParameters moving = {
             values + IIB::CHANNEL_SIGNED_GRAD_Y, IIB::MAPPING_MEAN, 4, 1.125f, {1, 15, 1}, zeros};
-    // boxes overlap, so that a moved camera shifts none wholly; see README.md
+    // boxes overlap, so that no box of a moved camera loses all of its pixels; see README.md
     const PoolParameters boxes = {values + IIB::CHANNEL_SIGNED_GRAD_X + IIB::CHANNEL_SIGNED_GRAD_Y,
             IIB::MAPPING_BOXES, 5, 1.25f, {}, IIB::BORDER_REFLECT};
     const Warps none = {};

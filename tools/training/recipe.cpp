@@ -23,7 +23,7 @@ std::set<std::string> sceneNames(const std::vector<ImagePair>& pairs)
     return names;
 }
 
-//! The selection as presetsHeader describes it, in lines of a string.
+//! The selection in the format of presetsHeader, as lines of a C++ string.
 std::string masksOf(const IIB& preset)
 {
     std::map<std::array<int, 4>, int> masks;

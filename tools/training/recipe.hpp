@@ -8,25 +8,25 @@
 
 namespace iib_tools {
 
-//! All that decides a selection but the images and the seed.
+//! The parameters of learning a selection, besides the images and the seed.
 struct Recipe
 {
     std::string name;
-    int bits;  //!< 0: all quads at even positions, there is nothing to learn
+    int bits;  //!< 0: all quads at even positions, without learning
     PoolParameters pool;
     Warps warps;
     int pairsPerScene;
-    double detected;  //!< share of the pairs whose points are detected, see describeForTraining
-    bool adaboost;    //!< choose whole quads by AdaBoost, as in the paper, instead of bits one by one
+    double detected;  //!< share of pairs with detected points, see describeForTraining
+    bool adaboost;    //!< whether to choose whole quads by AdaBoost, as in the paper, instead of single bits
 };
 
-//! How the built-in presets are made, in the order of IIBDescriptorExtractor::Preset.
+//! The recipes of the built-in presets, in the order of IIBDescriptorExtractor::Preset.
 std::vector<Recipe> presetRecipes();
 
-//! The paper's own: AdaBoost over the quads of all four channels.
+//! The paper's recipe: AdaBoost over the quads of all four channels.
 Recipe paperRecipe();
 
-//! Trains on all pairs given. Progress counts the pairs described, then the candidates chosen.
+//! Trains on all given pairs. Progress counts described pairs, then chosen candidates.
 cv::Ptr<cv::iib::IIBDescriptorExtractor> train(
         const Recipe& recipe, const TrainingSet& images, uint64 seed, const Progress& progress);
 
@@ -36,7 +36,7 @@ struct NamedExtractor
     cv::Ptr<cv::iib::IIBDescriptorExtractor> extractor;
 };
 
-//! The C++ header of the built-in presets; the command, the images' scenes and the seed go into its head.
+//! The C++ header of the built-in presets; its first comment records the command, the scenes and the seed.
 std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std::string& command,
         const TrainingSet& images, uint64 seed);
 

@@ -26,7 +26,7 @@ double logUniform(cv::RNG& rng, double low, double high)
 
 std::string sceneOf(const ImagePair& pair) { return pair.set + "/" + pair.sequence; }
 
-//! Any two images of a scene, one time in three the reference and a target.
+//! Two random images of a scene; in a third of the cases the reference and a target.
 LoadedPair drawPair(const std::vector<ImagePair>& scene, cv::RNG& rng)
 {
     const int first = rng.uniform(0, int(scene.size())), second = rng.uniform(0, int(scene.size()));
@@ -70,7 +70,7 @@ void makeSelfPair(Sample& sample)
     sample.relief.release();
 }
 
-//! By a power, and with noise.
+//! Changes an image by a gamma curve and noise.
 void changeGrey(cv::Mat& image, const Warps& warps, cv::RNG& rng)
 {
     const double gamma = logUniform(rng, 1 / warps.gamma, warps.gamma);
@@ -101,7 +101,7 @@ void warpTarget(LoadedPair& pair, const Warps& warps, cv::RNG& rng)
     const cv::Matx33d warp =
             back * bend * rotation(tiltAxis) * stretch * rotation(angle - tiltAxis) * toCentre;
 
-    cv::Mat source = pair.target.clone();  // it may share the reference's pixels
+    cv::Mat source = pair.target.clone();  // the target may share the reference's pixels
     if (scale < 1)                         // against aliasing
         cv::GaussianBlur(source, source, cv::Size(), 0.4 / scale);
     cv::Mat warped;

@@ -8,29 +8,29 @@
 
 namespace iib_tools {
 
-/** Grows a selection for mutual matching. An anchor point at distance d0 from its partner and d1..d15 from
-its nearest other points of the same image is matched right with probability
-p = 1 / (1 + sum exp((d0 - ratio dk) / T)), T = sqrt(bits) / 4; what is lost is 2 - 2 sqrt(p), which does not care
-much for hopeless points. Each step draws fresh anchors, finds the points that the bits chosen so far confuse
-them with, and takes those candidates along which the loss falls fastest, never two neighbours in one step.
+/** Grows a selection for mutual matching. An anchor point has distance d0 from its partner, and d1..d15 from the
+nearest other points of the partner's image. The model's probability of a right match is p = 1 / (1 + sum exp((d0 -
+ratio dk) / T)), T = sqrt(bits) / 4. The loss 2 - 2 sqrt(p) gives hopeless points little weight. Each step draws new
+anchors, finds the points with which the chosen bits confuse them, and adds the candidates along which the loss falls
+fastest, but no neighbours in one step.
 
-@return that many candidates at most, every level a whole number of bytes.
-@throws cv::Exception if the pairs are too few or the pool has too few bits. */
+@return at most `bits` candidates, with a whole number of bytes a level.
+@throws cv::Exception for too few pairs, or a pool of too few bits. */
 std::vector<int> selectGreedily(const CandidatePool& pool, const std::vector<DescribedPair>& pairs, int bits,
         uint64 seed, const Progress& progress);
 
-/** The paper's selection ("Reduction of the IIB Descriptor Size"): AdaBoost over whole quads of 4 bits. A sample is two
-points, the same one or two different ones of a pair, as many of each; a weak learner says "same" if at most so many bits
-of its quad differ. Quads are kept in the order in which AdaBoost takes them.
+/** The paper's selection ("Reduction of the IIB Descriptor Size"): AdaBoost over whole quads of 4 bits. Half of the
+samples are two views of one point, half are two different points. A weak learner says "same" if at most a threshold of
+its quad's bits differ. Quads are kept in the order of AdaBoost.
 
-@return whole quads, bits / 4 at most, every level a whole number of bytes.
-@throws cv::Exception as selectGreedily, and for a mapping of other quads. */
+@return at most bits / 4 whole quads, with a whole number of bytes a level.
+@throws cv::Exception as selectGreedily, and for a mapping with quads of other sizes. */
 std::vector<int> selectByAdaBoost(const CandidatePool& pool, const std::vector<DescribedPair>& pairs,
         int bits, uint64 seed, const Progress& progress);
 
-/** Makes every level a whole number of bytes, so that no bit is padding: levels are rounded and then keep or
-gain the candidates with the largest benefit, `bits` at most. `benefit` is one number a candidate of the pool; those that
-are not chosen need a positive one. */
+/** Rounds each level to a whole number of bytes, to avoid padding: levels lose or gain candidates, those with the
+largest benefit first, up to `bits` in all.
+@param benefit of each candidate of the pool; candidates that are not chosen are added only if it is positive. */
 std::vector<int> fillBytes(const CandidatePool& pool, const std::vector<int>& chosen,
         const std::vector<double>& benefit, int bits);
 

@@ -10,15 +10,13 @@
 namespace {
 using namespace iib_tools;
 
-const int FARTHEST = 4;  // frames between the pictures of a pair of a walk
+const int FARTHEST = 4;  // largest number of frames between the pictures of a pair
 const char* const ABOUT = "iib_train [OPTION...] FOLDER...\n"
                           "Learns which bits of IIB a short descriptor keeps, from folders of sequences.";
 const char* const KEYS =
-        "{out        | <none> | file (.yml or .json) for the selection, which IIBDescriptorExtractor::read "
-        "takes }"
-        "{like       | COMPACT | preset whose recipe is followed: channels, mapping, warps and points }"
-        "{adaboost   |        | choose whole quads of the paper's default descriptor by AdaBoost, as the "
-        "paper does }"
+        "{out        | <none> | file (.yml or .json) for the selection, for IIBDescriptorExtractor::read }"
+        "{like       | COMPACT | preset whose recipe is used: channels, mapping, warps and points }"
+        "{adaboost   |        | choose whole quads of the default descriptor by AdaBoost, as in the paper }"
         "{bits       | 256    | bits of the selection }"
         "{seed       | 1      | seed of all random choices }"
         "{presets    | <none> | train the built-in presets instead and write this C++ header }";
@@ -61,7 +59,7 @@ int run(const CommandLine& line)
     const uint64 seed = uint64(line.whole("seed", 0, most));
     const std::string header = line.text("presets"), out = line.text("out");
     if (line.positional().empty())
-        CV_Error(cv::Error::StsBadArg, "no FOLDER of sequences (--help tells more)");
+        CV_Error(cv::Error::StsBadArg, "no FOLDER of sequences (see --help)");
     if (header.empty() && out.empty())
         CV_Error(cv::Error::StsBadArg, "nothing to do: give --out or --presets");
     const TrainingSet images = {findPairs(line.positional()), findWalkPairs(line.positional(), FARTHEST)};

@@ -15,10 +15,10 @@ namespace {
 
 namespace fs = cv::utils::fs;
 
-const double DEPTH_TOLERANCE = 0.02;  // of the depth, for what is seen from both places
+const double DEPTH_TOLERANCE = 0.02;  // relative difference of depth of a point that both pictures see
 
-//! Of four frames the first two: one step apart and three to five, and hardly any view twice.
-bool isTaken(const Walk& walk, int frame)
+//! Whether a frame is one of the first two of four: this gives steps of one and three to five, and few repeated views.
+bool isUsed(const Walk& walk, int frame)
 {
     return (frame - 1) % 4 < 2 && fs::exists(walk.file("frames", frame)) &&
            fs::exists(walk.file("depth", frame));
@@ -29,7 +29,7 @@ void addPairs(const Walk& from, const Walk& to, int farthest, std::vector<WalkPa
     const int frames = int(std::min(from.poses.size(), to.poses.size()));
     for (int a = 1; a <= frames; a++)
         for (int b = std::max(1, a - farthest); b <= std::min(frames, a + farthest); b++)
-            if (a != b && isTaken(from, a) && isTaken(to, b))
+            if (a != b && isUsed(from, a) && isUsed(to, b))
             {
                 const cv::Affine3d &first = from.poses[a - 1], &second = to.poses[b - 1];
                 const cv::Matx33d rotation = second.rotation() * first.rotation().t();
@@ -91,7 +91,7 @@ Relief loadRelief(const WalkPair& pair)
     {
         depths[i] = readImage(files[i], cv::IMREAD_UNCHANGED);
         if (depths[i].type() != CV_16U || depths[i].size() != depths[0].size())
-            CV_Error(cv::Error::StsBadArg, files[i] + ": not depth of 16 bits of the other picture's size");
+            CV_Error(cv::Error::StsBadArg, files[i] + ": not a 16-bit depth map of the picture's size");
     }
     return {depths[0], depths[1], pair.camera, pair.rotation, pair.translation};
 }

@@ -9,7 +9,7 @@
 
 namespace iib_tools {
 
-//! Two pictures of a rendered walk (tools/synthetic), from two places and under any two lights.
+//! Two pictures of a rendered walk (tools/synthetic), from two poses and under any two lights.
 struct WalkPair
 {
     std::string scene;                        //!< "set/scene", without the light
@@ -17,26 +17,27 @@ struct WalkPair
     std::string referenceDepth, targetDepth;  //!< 16U, of the same size
     cv::Matx33d camera;                       //!< pixels
     cv::Matx33d rotation;                     //!< from the reference's axes to the target's
-    cv::Vec3d translation;                    //!< of the same, in steps of depth
+    cv::Vec3d translation;                    //!< likewise, in steps of depth
 };
 
-//! Ordered pairs of pictures of common/views.hpp's walks that lie up to `farthest` frames apart: frames 1, 2, 5, 6, 9, 10, ...
+//! Ordered pairs of pictures of the walks of common/views.hpp, at most `farthest` apart among frames 1, 2, 5, 6, 9, 10,
+//! ...
 std::vector<WalkPair> findWalkPairs(const std::vector<std::string>& roots, int farthest);
 
-//! What is seen where in the two pictures of a walk.
+//! The depth maps and relative pose of two pictures of a walk, which map points from one to the other.
 struct Relief
 {
-    cv::Mat_<ushort> reference, target;  //!< depth along the optical axis; 0: nothing there
+    cv::Mat_<ushort> reference, target;  //!< depth along the optical axis; 0: no surface
     cv::Matx33d camera, rotation;
     cv::Vec3d translation;
 
-    //! Where the target sees a keypoint of the reference, its size in proportion; size 0 if hidden, outside or unknown.
+    //! A keypoint of the reference projected to the target and scaled; size 0 if occluded, outside or of unknown depth.
     cv::KeyPoint project(const cv::KeyPoint& keypoint) const;
-    //! That of both pictures flipped about the vertical axis.
+    //! Flips both pictures about the vertical axis.
     void mirror();
 };
 
-//! @throws cv::Exception for a file that is no depth map.
+//! @throws cv::Exception for a file that is not a depth map.
 Relief loadRelief(const WalkPair& pair);
 
 }  // namespace iib_tools

@@ -10,7 +10,7 @@
 namespace opencv_test {
 namespace {
 
-//! Strecha's entry-P10, ten photographs of 768 x 512 pixels with poses, below OPENCV_TEST_DATA_PATH.
+//! Strecha's entry-P10 below OPENCV_TEST_DATA_PATH: ten photographs of 768 x 512 pixels, with poses.
 std::string entry(const std::string& name)
 {
     const char* data = getenv("OPENCV_TEST_DATA_PATH");

@@ -4,7 +4,7 @@
 namespace opencv_test {
 namespace {
 
-//! The demo's street at noon and by night: from beside, the same reduced to a quarter and rotated, and another place.
+//! The demo's street at noon and at night: from the side, reduced to a quarter and rotated, and another place.
 struct Images
 {
     explicit Images(const std::string& kind)
@@ -33,7 +33,7 @@ PERF_TEST_P(IIB_Views, matchViews, testing::Values("ordinary", "searched", "unre
     SANITY_CHECK_NOTHING();
 }
 
-//! What an ordinary pair takes without a search.
+//! The baseline for an ordinary pair, which needs no search.
 PERF_TEST_P(IIB_Views, chain, testing::Values("ordinary"))
 {
     const Images images(GetParam());
@@ -52,7 +52,7 @@ PERF_TEST_P(IIB_Views, chain, testing::Values("ordinary"))
     SANITY_CHECK_NOTHING();
 }
 
-//! What a search is compared with.
+//! The baseline for a search.
 PERF_TEST_P(IIB_Views, SIFT, testing::Values("searched", "unrelated"))
 {
     const Images images(GetParam());

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
-/* Finds where images were taken, in a map that cv::iib::buildMap or the command `opencv-iib map` made of a COLMAP model:
+/* Localizes images in a map that cv::iib::buildMap or the command `opencv-iib map` made from a COLMAP model:
     localize MAP CAMERA [IMAGE...] > poses.csv
-CAMERA is COLMAP's MODEL,WIDTH,HEIGHT,PARAMETERS, or 'map' for the map's only camera. Without images, their names are read from
-standard input, one a line, and each is answered at once; the last pose is then where the next image is looked for first.
-The status is 0 if all have a pose, 4 if some have, 3 if none has, 1 for an error and 2 for a mistake in the command line. */
+CAMERA is COLMAP's MODEL,WIDTH,HEIGHT,PARAMETERS, or 'map' for the map's only camera. Without images, their names are
+read from standard input, one a line, and each is answered at once; the last pose is the prior of the next image.
+Status: 0 if all images have a pose, 4 if some have, 3 if none has, 1 for an error and 2 for a wrong command line. */
 
 #include <iostream>
 #include <optional>
@@ -28,7 +28,7 @@ enum Status
     SOME_FOUND = 4
 };
 
-//! The camera that the text means. @throws cv::Exception for none, and for `map` if the map has several.
+//! The camera given by a text. @throws cv::Exception for another text, and for `map` if the map has several cameras.
 Camera cameraOf(const std::string& text, const Localizer& localizer)
 {
     if (text != "map")
@@ -41,20 +41,20 @@ Camera cameraOf(const std::string& text, const Localizer& localizer)
     return known[0];
 }
 
-//! As the file stores it: in COLMAP's models too, EXIF's orientation turns nothing.
+//! Reads the pixels as stored: like COLMAP, without EXIF's orientation.
 cv::Mat readGrey(const std::string& name)
 {
     try
     {
         return cv::imread(name, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
     }
-    catch (const cv::Exception&)  // a header that asks for more pixels than OpenCV reads
+    catch (const cv::Exception&)  // too many pixels for OpenCV
     {
         return cv::Mat();
     }
 }
 
-//! Where an image was taken, or the reason why that is not known.
+//! The location of an image, or the reason why there is none.
 Location locate(const Localizer& localizer, const Camera& camera, const std::string& name,
         const std::optional<cv::Affine3d>& prior)
 {
@@ -83,8 +83,8 @@ std::string quoted(const std::string& text)
 
 const char* const HEADER = "name,found,reason,matches,inliers,tx,ty,tz,qx,qy,qz,qw,deviation";
 
-/** A line of the table: the camera's centre in the map's unit, the quaternion from the camera's axes to the world's, and the
-standard deviation of the centre, the root of its covariance's trace. */
+/** A line of the table: the camera's centre in the map's unit, the quaternion from the camera's axes to the world's,
+and the standard deviation of the centre (root of the trace of its covariance). */
 std::string row(const std::string& name, const Location& location)
 {
     std::string line =
@@ -104,7 +104,7 @@ std::string row(const std::string& name, const Location& location)
 int run(const std::string& map, const std::string& cameraText, const std::vector<std::string>& images)
 {
     const bool streaming = images.empty();
-    // For single images, as many points as the map's have: it takes twice the time, and finds more in hard light.
+    // Single images get as many points as the map's: twice the time, but more poses in difficult illumination.
     const Localizer localizer(map, streaming ? 1000 : 0);
     const Camera camera = cameraOf(cameraText, localizer);
     size_t all = 0, found = 0;

@@ -8,29 +8,31 @@ namespace opencv_test {
 
 typedef std::vector<double> Numbers;
 
-/** The check of all derivatives: those that are told against central differences.
-@param told a row a value, a column a number of the step.
-@param valuesAt the values after a step, all of them finite.
-@param tolerance of 1 plus the derivative. */
+/** Checks analytic derivatives against central differences.
+@param analytic one row a value, one column a coordinate of the step.
+@param valuesAt returns the finite values after a step.
+@param tolerance relative to 1 plus the derivative. */
 template <class ValuesAt>
-void expectDerivatives(const Mat_<double>& told, const ValuesAt& valuesAt, double tolerance, double h = 1e-6)
+void expectDerivatives(
+        const Mat_<double>& analytic, const ValuesAt& valuesAt, double tolerance, double h = 1e-6)
 {
-    for (int k = 0; k < told.cols; k++)
+    for (int k = 0; k < analytic.cols; k++)
     {
-        Numbers step(told.cols);
+        Numbers step(analytic.cols);
         step[k] = h;
         const Numbers up = valuesAt(step);
         step[k] = -h;
         const Numbers down = valuesAt(step);
-        ASSERT_EQ(size_t(told.rows), up.size());
-        ASSERT_EQ(size_t(told.rows), down.size());
-        for (int i = 0; i < told.rows; i++)
-            ASSERT_NEAR((up[i] - down[i]) / (2 * h), told(i, k), tolerance * (1 + std::abs(told(i, k))))
+        ASSERT_EQ(size_t(analytic.rows), up.size());
+        ASSERT_EQ(size_t(analytic.rows), down.size());
+        for (int i = 0; i < analytic.rows; i++)
+            ASSERT_NEAR(
+                    (up[i] - down[i]) / (2 * h), analytic(i, k), tolerance * (1 + std::abs(analytic(i, k))))
                     << "value " << i << " by number " << k;
     }
 }
 
-//! The same of a Problem of robust_fit.hpp: its rows, and its loss, whose derivatives these rows have.
+//! Checks the rows of a Problem of robust_fit.hpp, and its loss, whose derivatives follow from the rows.
 template <class Problem>
 void expectDerivatives(
         const Problem& problem, const typename Problem::Model& model, double scale, double tolerance)
@@ -39,13 +41,13 @@ void expectDerivatives(
     std::vector<cv::iib::Row<Step>> rows;
     problem.linearize(model, DBL_MAX, rows);
     ASSERT_FALSE(rows.empty());
-    Mat_<double> told(int(rows.size()) + 1, problem.parameters(), 0.);
+    Mat_<double> analytic(int(rows.size()) + 1, problem.parameters(), 0.);
     for (size_t i = 0; i < rows.size(); i++)
-        for (int k = 0; k < told.cols; k++)
+        for (int k = 0; k < analytic.cols; k++)
         {
-            told(int(i), k) = rows[i].J[k];
+            analytic(int(i), k) = rows[i].J[k];
             if (rows[i].r2 < cv::iib::FARTHEST * scale * scale)
-                told(told.rows - 1, k) += 2 * rows[i].r / (scale * scale + rows[i].r2) * rows[i].J[k];
+                analytic(analytic.rows - 1, k) += 2 * rows[i].r / (scale * scale + rows[i].r2) * rows[i].J[k];
         }
     const auto valuesAt = [&](const Numbers& numbers) {
         Step step;
@@ -58,7 +60,7 @@ void expectDerivatives(
         values.push_back(problem.loss(there, scale, DBL_MAX));
         return values;
     };
-    expectDerivatives(told, valuesAt, tolerance);
+    expectDerivatives(analytic, valuesAt, tolerance);
 }
 
 }  // namespace opencv_test

@@ -9,12 +9,12 @@
 #include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/ts.hpp"
 
-//! A folder of its own for one test, removed with the object.
+//! A temporary folder, removed with the object.
 class TestFolder
 {
 public:
     TestFolder() : path_(cv::tempfile()) { cv::utils::fs::createDirectories(path_); }
-    ~TestFolder() { std::filesystem::remove_all(path_); }  // links too
+    ~TestFolder() { std::filesystem::remove_all(path_); }
     TestFolder(const TestFolder&) = delete;
     TestFolder& operator=(const TestFolder&) = delete;
 
@@ -22,7 +22,7 @@ public:
     void makeFolder(const std::string& name) const { cv::utils::fs::createDirectories(path(name)); }
     void write(const std::string& name, const std::string& text) const
     {
-        std::filesystem::remove(path(name));  // ext4 waits for the disk where a file is written over
+        std::filesystem::remove(path(name));  // overwriting a file would wait for the disk on ext4
         std::ofstream(path(name), std::ios::binary) << text;
     }
 
@@ -30,7 +30,7 @@ private:
     std::string path_;
 };
 
-//! The message of the cv::Exception that a statement throws, empty if it throws none.
+//! The message of the cv::Exception that a statement throws; empty if it throws none.
 template <typename Statement> std::string messageOf(Statement statement)
 {
     try
@@ -44,7 +44,7 @@ template <typename Statement> std::string messageOf(Statement statement)
     return "";
 }
 
-//! That a statement throws since another process writes to the folder. On Windows the message goes on: which file to remove.
+//! Expects that the folder is locked by another process. On Windows the message goes on with the file to remove.
 template <typename Statement> void expectAnotherWrites(const std::string& folder, Statement statement)
 {
     const std::string message = messageOf(statement);

@@ -5,7 +5,7 @@
 #include "opencv2/iib_geometry.hpp"
 #include "opencv2/ts.hpp"
 
-// As src/precomp.hpp, which OpenCV's precompiled copy of this header would look for in another module.
+// As in src/precomp.hpp, which OpenCV's precompiled copy of this header would search in another module.
 #if CV_VERSION_MAJOR >= 5
 #include "opencv2/geometry.hpp"
 #else

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#if defined IIB_SAMPLE_LOCALIZE && !defined _WIN32  // the program, where it is built, by a POSIX shell
+#if defined IIB_SAMPLE_LOCALIZE && !defined _WIN32  // the sample's path; needs a POSIX shell
 
 #include <cstdlib>
 
@@ -12,7 +12,7 @@ using namespace opencv_test;
 class Sample : public WallTest
 {
 protected:
-    //! The lines on standard output, their fields between commas.
+    //! The fields of the lines on standard output.
     std::vector<std::vector<std::string>> localize(const std::string& arguments, int expected)
     {
         const std::string line = "'" IIB_SAMPLE_LOCALIZE "' '" + folder.path("map") + "' " + arguments +
@@ -30,7 +30,7 @@ protected:
         return rows;
     }
 
-    //! That a row has a pose at this place.
+    //! Expects a row with a pose at this position.
     static void expectPose(const std::vector<std::string>& row, const cv::Affine3d& truth)
     {
         ASSERT_EQ(13u, row.size());

@@ -24,18 +24,17 @@ inline std::string textOf(const std::string& path)
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-//! World from camera, turned to the right.
+//! World from camera; yaw is to the right.
 inline cv::Affine3d poseAt(double x, double y, double yaw)
 {
     return cv::Affine3d(cv::Vec3d(0, yaw, 0), cv::Vec3d(x, y, 0.2 * x));
 }
 
-/** A textured wall that a camera in any pose near the origin sees, 4 m away and slanted:
-points (x, y, 4 + 0.4 x) for each pixel (120 a metre) of the texture. */
+/** A slanted, textured wall 4 m from the origin: points (x, y, 4 + 0.4 x), with 120 pixels of texture a metre. */
 class Wall
 {
 public:
-    //! @param posters rectangles of one grey, with straight edges.
+    //! @param posters number of uniform rectangles, which have straight edges.
     explicit Wall(uint64 seed, int posters = 0) : texture_(900, 1200, CV_32F, cv::Scalar(128))
     {
         cv::RNG random(seed);
@@ -67,7 +66,7 @@ public:
         return result;
     }
 
-    //! What a camera sees at a pixel.
+    //! The point of the wall that a camera sees at a pixel.
     static cv::Point3d point(const cv::Affine3d& worldFromCamera, const cv::Point2f& pixel)
     {
         const cv::Vec3d normal(-0.4, 0, 1);  // the wall is normal * x = 4
@@ -86,10 +85,10 @@ template <typename T> void put(std::string& file, T value)
     file.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
-//! Files and what is in them.
+//! Contents of files by name.
 typedef std::map<std::string, std::string> Files;
 
-//! Six images along a wall, some below a folder, and a map of them whose points lie on it.
+//! Six images along a wall, three of them in a subfolder, and their map with exact points.
 struct WallScene
 {
     WallScene() : wall(1)
@@ -125,7 +124,7 @@ struct WallScene
     std::vector<cv::Mat> pictures;
 };
 
-//! The scene, made once for all tests, with its images and its map in a folder of each test.
+//! Shares one scene among all tests, and writes its images and map to a folder for each test.
 class WallTest : public testing::Test
 {
 protected:
@@ -135,7 +134,7 @@ protected:
         for (size_t i = 0; i < map.images.size(); i++)
         {
             cv::imwrite(folder.path("images/" + map.images[i].name), scene().pictures[i]);
-            map.images[i].codes = map.images[i].codes.clone();  // which a test may change
+            map.images[i].codes = map.images[i].codes.clone();  // tests may change their codes
         }
         MapFolder(folder.path("map")).write(map);
     }
@@ -146,7 +145,7 @@ protected:
         return made;
     }
 
-    //! Gives the images below a folder.
+    //! Reads images below a folder.
     ImageReader images(const std::string& below = "images") const
     {
         return [this, below](const std::string& name) {
@@ -155,9 +154,9 @@ protected:
         };
     }
 
-    /** The images of COLMAP's model, in binary form, of the six images and of one that is gone.
-    @param points of the model, each seen by all images.
-    @param camera COLMAP's number of its model; PINHOLE. */
+    /** A binary COLMAP model of the six images and one missing image.
+    @param points number of points, each seen by all images.
+    @param camera COLMAP's number of the camera model; 1 is PINHOLE. */
     Files model(double unit, int points, uint32_t camera = 1, const cv::Vec3d& origin = cv::Vec3d()) const
     {
         Files files;

@@ -28,7 +28,7 @@ struct MillionCodes
     }
 };
 
-PERF_TEST(IIB_MappedIndex, open_and_first_search)  // which maps and checks all codes
+PERF_TEST(IIB_MappedIndex, open_and_first_search)  // maps and checks all codes
 {
     MillionCodes found;
     TEST_CYCLE()

@@ -13,8 +13,8 @@ static const size_t CHECKED_BYTES = 1 << 20;
 
 static uint64 aligned(uint64 offset) { return (offset + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT; }
 
-// FNV-1a of little-endian 64-bit words, which is eight times as fast as that of bytes. Each step is one to one, so that a
-// single word that changed is always seen.
+// FNV-1a of little-endian 64-bit words, eight times as fast as of bytes. Each step is injective, so a single changed
+// word is always detected.
 static uint64 wordHash(const Mat& blocks)
 {
     uint64 state = CV_BIG_UINT(0xcbf29ce484222325);
@@ -27,7 +27,7 @@ static uint64 wordHash(const Mat& blocks)
     return state;
 }
 
-// Calls `visit` with the number of each part that a checksum is for, and its blocks, on several threads.
+// Calls `visit` in parallel with the number and the blocks of each part that has a checksum.
 template <typename Visit> static void forEachPart(const Mat& blocks, int checkedBlocks, const Visit& visit)
 {
     const int parts = (int)(((int64)blocks.rows + checkedBlocks - 1) / checkedBlocks);
@@ -83,7 +83,7 @@ void CodeSegment::map()
 {
     CheckedReader header(name, KIND);
     if (header.version() == 1)
-        header.fail("no release wrote its format 1: make the index anew");
+        header.fail("it has format 1, which no release wrote: make the index again");
     if (header.list<int>(4) != levels)
         header.fail("its levels are not those of the manifest");
     const unsigned layout = header.word();
@@ -113,20 +113,20 @@ void CodeSegment::map()
     const size_t blockBytes = PackedCodes::blockBytes(levels, layout);
     if (blocks > INT_MAX || bytes->size() != offset + blocks * blockBytes)
         header.fail("it is truncated or altered");
-    const Mat lying(
+    const Mat mapped(
             (int)blocks, (int)(blockBytes / sizeof(int)), CV_32S, const_cast<uchar*>(bytes->data()) + offset);
     if (std::count(bytes->data() + header.position(), bytes->data() + offset, 0) !=
             (int64)(offset - header.position()))
-        header.fail("it is altered: there is something between its header and its codes");
+        header.fail("it is altered: the padding between its header and its codes is not zero");
     const size_t partRows = (size_t)checkedBlocks * CodeLayout::CODES_PER_BLOCK;
-    std::vector<uchar> right(checksums.size());
-    forEachPart(
-            lying, checkedBlocks, [&](int i, const Mat& part) { right[i] = wordHash(part) == checksums[i]; });
-    const size_t wrong = std::find(right.begin(), right.end(), 0) - right.begin();
-    if (wrong < right.size())
-        header.fail(format("it is altered: its rows from %lld on are not as they were written",
+    std::vector<uchar> intact(checksums.size());
+    forEachPart(mapped, checkedBlocks,
+            [&](int i, const Mat& part) { intact[i] = wordHash(part) == checksums[i]; });
+    const size_t wrong = std::find(intact.begin(), intact.end(), 0) - intact.begin();
+    if (wrong < intact.size())
+        header.fail(format("it is altered: the checksum of its rows from %lld on is wrong",
                 (long long)(wrong * partRows)));
-    packed = makePtr<PackedCodes>(levels, layout, starts, lying);
+    packed = makePtr<PackedCodes>(levels, layout, starts, mapped);
     file = bytes;
 }
 

@@ -9,28 +9,28 @@
 namespace cv {
 namespace iib {
 
-/* Format 2 of a segment, a checked file: u32: number of levels, each level's bytes, layout, checked blocks: blocks of
-PackedCodes that a checksum is for; u64: number of images, each image's rows, a checksum for each of the checked blocks; the
-hash. Then zeros up to a multiple of 4096 bytes, and from there the blocks of PackedCodes. Checksums are FNV-1a of
-little-endian words of 64 bits. */
+/* Format 2 of a segment, a checked file:
+- u32: number of levels, each level's bytes, layout, number of blocks of PackedCodes per checksum;
+- u64: number of images, each image's rows, the checksums (FNV-1a of little-endian 64-bit words), the hash;
+- zeros up to a multiple of 4096 bytes, then the blocks of PackedCodes. */
 
-//! What the manifest says of a segment.
+//! A segment's entry in the manifest.
 struct SegmentEntry
 {
     uint64 number, rows, images, checksum;  //!< checksum: the hash in the file
 };
 
-//! Writes codes to a file, which appears when it is whole and on the disk.
+//! Writes codes to a file, which appears only when it is complete and on the disk.
 SegmentEntry writeSegment(
         const String& filename, uint64 number, const std::vector<int>& levels, const PackedCodes& codes);
 
-//! A segment's file, mapped and checked when its codes are first asked for.
+//! A segment's file, mapped and checked on first use.
 class CodeSegment
 {
 public:
     CodeSegment(const String& filename, const SegmentEntry& entry, const std::vector<int>& levelSizes);
     const SegmentEntry& entry() const { return expected; }
-    //! @throws cv::Exception that names the file if it is missing, altered, or not the one that the entry tells of.
+    //! @throws cv::Exception that names the file if it is missing, altered, or not the file of the entry.
     const PackedCodes& codes();
 
 private:
@@ -41,7 +41,7 @@ private:
     const std::vector<int> levels;
     std::mutex lock;
     Ptr<MappedFile> file;
-    Ptr<PackedCodes> packed;  // null until it is checked
+    Ptr<PackedCodes> packed;  // null until the file is checked
 };
 
 }  // namespace iib

@@ -4,7 +4,7 @@
 #include "opencv2/iib/detail/files.hpp"
 
 #ifdef _WIN32
-#define NOMINMAX 1  // as libstdc++ has it
+#define NOMINMAX 1  // the value of libstdc++
 #include <windows.h>
 #else
 #include "opencv2/core/utils/filesystem.hpp"
@@ -34,7 +34,7 @@ static bool isUnfinished(const String& name)
     return isPartOf(MANIFEST, name) || isPartOf(format(SEGMENT, segment), name);
 }
 
-#ifdef _WIN32  // OpenCV's own functions take no name outside of the code page
+#ifdef _WIN32  // OpenCV's functions accept only names in the code page
 static void makeDirectory(const String& name) { CreateDirectoryW(systemName(name).c_str(), 0); }
 static bool isDirectory(const String& name)
 {
@@ -82,9 +82,9 @@ void checkEmpty(const String& folder)
     for (const String& name : namesIn(folder))
     {
         if (name == MANIFEST)
-            CV_Error(Error::StsBadArg, folder + " holds an index already: open it, or take another folder");
+            CV_Error(Error::StsBadArg, folder + " already holds an index: open it, or choose another folder");
         if (name != LOCK && !isUnfinished(name))
-            CV_Error(Error::StsBadArg, folder + " is not empty, it holds " + name + ": take an empty folder");
+            CV_Error(Error::StsBadArg, folder + " holds " + name + ": choose an empty folder");
     }
 }
 

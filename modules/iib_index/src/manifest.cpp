@@ -21,8 +21,8 @@ CheckedWriter writeManifest(const String& filename, Manifest& manifest)
     return file;
 }
 
-// What every commit keeps to, whose numbers are added up without a further look.
-static bool fits(const Manifest& manifest)
+// Checks the invariants of a commit; sums of its numbers cannot overflow then.
+static bool isConsistent(const Manifest& manifest)
 {
     const uint64 limit = (uint64)1 << INDEX_BITS;
     uint64 rows = 0, images = 0, last = 0;
@@ -57,8 +57,8 @@ Manifest readManifest(const String& filename)
     manifest.removed = file.list<uint64>(8);
     manifest.checksum = file.seal();
     file.expectEnd();
-    if (!fits(manifest))
-        file.fail("its segments and images do not fit together");
+    if (!isConsistent(manifest))
+        file.fail("the numbers of its segments and images are inconsistent");
     return manifest;
 }
 

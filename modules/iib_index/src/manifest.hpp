@@ -7,19 +7,21 @@
 namespace cv {
 namespace iib {
 
-/* Format 1 of a manifest, a checked file: u32: number of levels, each level's bytes; u64: number of segments; of each:
-number (of its file's name, ascending), rows, images, checksum; number of removed images, each of them in ascending order. */
+/* Format 1 of a manifest, a checked file:
+- u32: number of levels, each level's bytes;
+- u64: number of segments; for each, number (in its file's name, ascending), rows, images, checksum;
+- u64: number of removed images, and each of them in ascending order. */
 
-//! What a commit of MappedIndex holds: the segments in the order of their rows, and which images are hidden.
+//! A commit of MappedIndex: the segments in the order of their rows, and the hidden images.
 struct Manifest
 {
     std::vector<int> levelSizes;
     std::vector<SegmentEntry> segments;
     std::vector<uint64> removed;  //!< images, ascending
-    uint64 checksum = 0;          //!< of the file that it was read from
+    uint64 checksum = 0;          //!< of the manifest's file
 };
 
-//! Writes a manifest beside the old one, which commit() replaces in one step, and fills in its checksum.
+//! Writes a manifest beside the old one and sets its checksum. The result's commit() replaces the old one atomically.
 CheckedWriter writeManifest(const String& filename, Manifest& manifest);
 
 Manifest readManifest(const String& filename);

@@ -5,7 +5,7 @@
 #include "opencv2/iib/detail/files.hpp"
 
 #ifdef _WIN32
-#define NOMINMAX 1  // as libstdc++ has it
+#define NOMINMAX 1  // the value of libstdc++
 #include <windows.h>
 #else
 #include <fcntl.h>

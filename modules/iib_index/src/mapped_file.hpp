@@ -6,8 +6,7 @@
 namespace cv {
 namespace iib {
 
-//! A file's bytes as read-only memory, read from the disk where they are looked at. The file must not become shorter
-//! meanwhile.
+//! A file mapped into read-only memory, and read from the disk on access. The file must not be shortened meanwhile.
 class MappedFile
 {
 public:

@@ -19,19 +19,19 @@ void checkNumber(int64 number, uint64 count, const char* what)
                 Error::StsOutOfRange, ("%s %lld: there are %lld", what, (long long)number, (long long)count));
 }
 
-// The last segment that begins at or before a number; `firsts` ends with the number of all.
+// The last segment that begins at or before a number; `firsts` ends with the total.
 size_t segmentHolding(int64 number, const std::vector<size_t>& firsts, const char* what)
 {
     checkNumber(number, firsts.back(), what);
     return std::upper_bound(firsts.begin(), firsts.end(), (size_t)number) - firsts.begin() - 1;
 }
 
-//! A commit of an index, ready to be searched.
+//! A commit of an index, ready for searches.
 class IndexCommit
 {
 public:
-    //! Takes segments over from an earlier commit, which may have them mapped.
-    //! @throws cv::Exception if the manifest's level sizes make no sense.
+    //! Reuses segments of an earlier commit, which may be mapped already.
+    //! @throws cv::Exception for invalid level sizes in the manifest.
     IndexCommit(const String& folder, const Manifest& manifest, const IndexCommit* before)
         : committed(manifest), firstRows(1, 0), firstImages(1, 0)
     {
@@ -73,10 +73,9 @@ public:
         return opened[i]->codes().descriptors((size_t)image - firstImages[i]);
     }
 
-    //! A segment's part of a search.
     CodePart part(int segment) const
     {
-        // First: a manifest may claim more images than memory has bits for.
+        // The codes come first, to check the number of images: a damaged manifest may claim more than memory holds.
         const PackedCodes& codes = opened[segment]->codes();
         const std::vector<uint64>& removed = committed.removed;
         const auto first = std::lower_bound(removed.begin(), removed.end(), firstImages[segment]),
@@ -90,7 +89,7 @@ public:
 private:
     Manifest committed;
     std::vector<Ptr<CodeSegment>> opened;
-    std::vector<size_t> firstRows, firstImages;  //!< of each segment, and the number of all
+    std::vector<size_t> firstRows, firstImages;  //!< of each segment, then the total
 };
 
 uint64 imagesOf(const Manifest& manifest)
@@ -126,7 +125,7 @@ public:
         commit([&](Manifest& next) {
             if (next.levelSizes != levelSizes())
                 CV_Error(
-                        Error::StsBadArg, folder + " holds an index of other level sizes now: open it again");
+                        Error::StsBadArg, folder + " now holds an index of other level sizes: open it again");
             const uint64 number = next.segments.empty() ? 1 : next.segments.back().number + 1;
             next.segments.push_back(writeSegment(segmentOf(folder, number), number, next.levelSizes, codes));
         });
@@ -158,7 +157,7 @@ public:
     }
 
 private:
-    // Whatever may throw comes before the commit: what is committed does not throw.
+    // Everything that may throw comes before the file's commit, so that a call that throws has committed nothing.
     void commit(const std::function<void(Manifest&)>& change)
     {
         const FileLock lock(lockOf(folder), FileLock::LOCK_FILE);
@@ -183,7 +182,7 @@ Ptr<MappedIndex> MappedIndex::create(const String& folder, const std::vector<int
 {
     PackedCodes::check(levelSizes);
     makeFolder(checkedName(folder));
-    checkEmpty(folder);  // before the lock is in it
+    checkEmpty(folder);  // also here, so that no lock is left in a folder of other files
     const FileLock lock(lockOf(folder), FileLock::LOCK_FILE);
     checkEmpty(folder);
     Manifest manifest;

@@ -12,25 +12,28 @@ namespace opencv_test {
 const std::vector<int> LEVELS = {2, 8, 32};
 const int BYTES = 42;
 
-struct Found
+struct Neighbours
 {
     std::vector<int64> rows;
     std::vector<int> distances;
-    bool operator==(const Found& other) const { return rows == other.rows && distances == other.distances; }
+    bool operator==(const Neighbours& other) const
+    {
+        return rows == other.rows && distances == other.distances;
+    }
 };
 
-inline Found search(const MappedIndex& index, const Mat& queries, int k, int segment = -1)
+inline Neighbours search(const MappedIndex& index, const Mat& queries, int k, int segment = -1)
 {
-    Found found;
+    Neighbours found;
     index.knnSearch(queries, k, found.rows, found.distances, segment);
     return found;
 }
 
-//! What brute force finds; `hidden` images are left out.
-inline Found expected(const std::vector<Mat>& images, const Mat& queries, int k,
+//! The neighbours by brute force, without `hidden` images.
+inline Neighbours expected(const std::vector<Mat>& images, const Mat& queries, int k,
         const std::set<int>& hidden = std::set<int>())
 {
-    Found found;
+    Neighbours found;
     for (int q = 0; q < queries.rows; q++)
     {
         std::vector<std::pair<int, int64>> all;
@@ -51,10 +54,10 @@ inline Found expected(const std::vector<Mat>& images, const Mat& queries, int k,
     return found;
 }
 
-//! A segment each: 3 images, one of them empty; a single row; nothing; more than a block of the scan.
+//! Rows of each segment's images: 3 images, one of them empty; a single row; no rows; more than a block of the scan.
 const std::vector<std::vector<int>> ADDED = {{40, 0, 17}, {1}, {0, 0}, {2100, 5}};
 
-//! An index of ADDED and what is in it.
+//! An index of ADDED and its descriptors.
 struct IndexFixture : public testing::Test
 {
     const TemporaryFolder folder;

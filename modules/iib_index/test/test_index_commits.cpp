@@ -41,7 +41,7 @@ TEST_F(IIB_MappedIndex_Commits, writers_at_the_same_time_lose_nothing)
     EXPECT_EQ(20u, values.size());
 }
 
-TEST_F(IIB_MappedIndex_Commits, create_takes_only_an_empty_folder)
+TEST_F(IIB_MappedIndex_Commits, create_needs_an_empty_folder)
 {
     for (const char* name : {"thesis.tmp", ".hidden", "segment-000001.iib"})
     {
@@ -59,7 +59,7 @@ TEST_F(IIB_MappedIndex_Commits, create_takes_only_an_empty_folder)
     expectError(Error::StsBadArg, "already", [&] { MappedIndex::create(folder.name, LEVELS); });
 }
 
-TEST_F(IIB_MappedIndex_Commits, create_takes_what_a_killed_one_left)
+TEST_F(IIB_MappedIndex_Commits, create_accepts_leftovers_of_a_killed_one)
 {
     const TemporaryFolder other;
     writeFile(other.name + "/lock", "");
@@ -68,7 +68,7 @@ TEST_F(IIB_MappedIndex_Commits, create_takes_what_a_killed_one_left)
     EXPECT_EQ(1, MappedIndex::open(other.name)->images());
 }
 
-TEST_F(IIB_MappedIndex_Commits, remove_unfinished_files_of_the_index_alone)
+TEST_F(IIB_MappedIndex_Commits, writers_remove_only_unfinished_files_of_the_index)
 {
     const std::vector<String> others = {"thesis.tmp", "saved.iib.12-0.tmp", "segment-000001.iib.tmp",
             "segment-1.iib.12-0.tmp", "segment-000001.iib.12-0.tmp.old", "my-segment-000001.iib.12-0.tmp",
@@ -85,8 +85,7 @@ TEST_F(IIB_MappedIndex_Commits, remove_unfinished_files_of_the_index_alone)
         EXPECT_FALSE(utils::fs::exists(folder.name + "/" + name)) << name;
 }
 
-// What an old object believes does not count.
-TEST_F(IIB_MappedIndex_Commits, remove_looks_at_the_last_commit)
+TEST_F(IIB_MappedIndex_Commits, remove_refers_to_the_last_commit)
 {
     MappedIndex::open(folder.name)->add(queries);
     index->remove({8});
@@ -102,8 +101,8 @@ TEST_F(IIB_MappedIndex_Commits, remove_looks_at_the_last_commit)
     EXPECT_EQ(-1, search(*index, queries, 1).rows[0]);
 }
 
-// A file in its place would be in the way of who makes it again.
-TEST_F(IIB_MappedIndex_Commits, a_folder_that_another_process_has_removed_is_not_made_to_be_locked)
+// Locking must not make the folder again: it would be in the way of a new index.
+TEST_F(IIB_MappedIndex_Commits, a_removed_folder_is_not_made_again_by_locking)
 {
     const String gone = folder.name + "/gone", file = folder.name + "/lock";
     for (const String& name : {gone, file})
@@ -114,7 +113,7 @@ TEST_F(IIB_MappedIndex_Commits, a_folder_that_another_process_has_removed_is_not
 }
 
 #ifdef __linux__
-// It keeps the files that were open: the lock too.
+// A forked child inherits open files, including the lock.
 TEST_F(IIB_MappedIndex_Commits, a_child_forked_meanwhile_does_not_keep_the_lock)
 {
     const Mat many = randomDescriptors(7, 200000, BYTES);
@@ -130,7 +129,7 @@ TEST_F(IIB_MappedIndex_Commits, a_child_forked_meanwhile_does_not_keep_the_lock)
     const pid_t child = fork();
     if (child == 0)
     {
-        alarm(600);  // ends it where the test ends before it does
+        alarm(600);  // ends the child if the test ends first
         for (;;)
             pause();
     }
@@ -141,8 +140,8 @@ TEST_F(IIB_MappedIndex_Commits, a_child_forked_meanwhile_does_not_keep_the_lock)
     waitpid(child, 0, 0);
 }
 
-// Who waited for the removed file's lock waits for that of the file in its place, as of an index that was made again.
-TEST_F(IIB_MappedIndex_Commits, a_lock_on_a_file_that_another_process_has_removed_is_none)
+// A process that got the lock of a removed file must wait for the new file's lock, such as that of an index made again.
+TEST_F(IIB_MappedIndex_Commits, a_lock_on_a_removed_file_does_not_count)
 {
     const String name = folder.name + "/lock";
     const auto timesOpened = [&] {
@@ -187,7 +186,7 @@ TEST_F(IIB_MappedIndex_Commits, a_lock_on_a_file_that_another_process_has_remove
     waiting.join();
 }
 
-// Between opening and locking it; nobody holds its lock.
+// The file is replaced between opening and locking; nobody holds its lock.
 TEST_F(IIB_MappedIndex_Commits, an_output_that_another_process_replaces_is_not_in_use)
 {
     const String name = folder.name + "/output", next = folder.name + "/next";
@@ -197,7 +196,7 @@ TEST_F(IIB_MappedIndex_Commits, an_output_that_another_process_replaces_is_not_i
         {
             close(open(next.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0666));
             EXPECT_EQ(0, std::rename(next.c_str(), name.c_str()));
-            usleep(100);  // or no lock would ever be in time
+            usleep(100);  // else no lock would be in time
         }
     });
     for (int times = 0; times < 5000; times++)
@@ -230,10 +229,10 @@ TEST_F(IIB_MappedIndex_Commits, killed_writers_leave_whole_commits)
     {
         const pid_t writer = fork();
         if (writer == 0)
-            for (;;)  // until it is killed
+            for (;;)  // until the child is killed
                 MappedIndex::open(folder.name)->add(images[0]);
         ASSERT_GT(writer, 0);
-        while (index->images() == count)  // until it has committed something
+        while (index->images() == count)  // until the child has committed an image
             index->refresh();
         usleep(delay * 300);
         kill(writer, SIGKILL);

@@ -9,17 +9,17 @@ namespace {
 
 struct IIB_MappedIndex_Files : public IndexFixture
 {
-    //! That the folder opens, and each search throws and names the file.
+    //! Expects that the folder opens, and each search throws and names the file.
     void expectRefused(const String& name, int code = Error::StsParseError) const
     {
         const Ptr<MappedIndex> opened = MappedIndex::open(folder.name);
-        for (int i = 0; i < 2; i++)  // not only the first time
+        for (int i = 0; i < 2; i++)  // also the second time
             expectError(code, name, [&] { search(*opened, queries, 1); });
     }
 };
 
-//! The files of an index of two levels, 1 and 20 bytes, with three images of 1, 0 and 2 rows of goldenRow(), the first image
-//! removed. Made by the library of 22 November 2026, their header changed to format 2 as code_segment.hpp says, by a script.
+//! The files of an index with levels of 1 and 20 bytes and three images of 1, 0 and 2 rows of goldenRow(), the first
+//! one removed. Made by the library of 22 November 2026; a script changed their header to format 2 of code_segment.hpp.
 struct Golden
 {
     int layout;
@@ -41,7 +41,7 @@ const Golden GOLDENS[] = {
                 "7452393f"},
 };
 
-//! Where the codes of each layout are not zero.
+//! Positions at which the codes of each layout are not zero.
 const std::vector<std::pair<int, std::string>> CODES[] = {
         {{0, "0b"}, {4, "70"}, {8, "d5"}, {64, "3b557a9fe5badf042f1f4469"}, {128, "b0f0b07070b0f050b070d0d0"},
                 {192, "7f19be4329fe83c8ebc3082d"}, {256, "9c94acf494ac74b4acf4b46c"},
@@ -75,7 +75,7 @@ std::string fromHex(const std::string& hex)
     return bytes;
 }
 
-//! A file's bytes with a number put in, little-endian.
+//! A file's bytes with a little-endian number overwritten.
 std::string with(std::string bytes, size_t position, uint64 value, int size = 8)
 {
     for (int i = 0; i < size; i++)
@@ -118,7 +118,7 @@ TEST_F(IIB_MappedIndex_Files, are_written_as_documented)
 
 TEST_F(IIB_MappedIndex_Files, names_in_any_language)
 {
-    const String name = folder.name + "/\xc3\xa9\xe6\xbc\xa2\xd0\xb6";  // of no code page of Windows
+    const String name = folder.name + "/\xc3\xa9\xe6\xbc\xa2\xd0\xb6";  // in no code page of Windows
     for (int i = 0; i < 2; i++)
         (i == 0 ? MappedIndex::create(name, LEVELS) : MappedIndex::open(name))->add(images[0]);
     EXPECT_EQ(2, MappedIndex::open(name)->images());
@@ -138,7 +138,7 @@ TEST_F(IIB_MappedIndex_Files, of_each_layout_are_read)
         ASSERT_EQ(3, opened->images());
         for (int image = 0; image < 3; image++)
             EXPECT_EQ(0, cvtest::norm(goldenImages()[image], opened->descriptors(image), NORM_INF));
-        const Found found = search(*opened, goldenRow(2), 3);
+        const Neighbours found = search(*opened, goldenRow(2), 3);
         EXPECT_EQ(std::vector<int64>({2, 1, -1}), found.rows);
         EXPECT_EQ(std::vector<int>({0, (int)cvtest::norm(goldenRow(1), goldenRow(2), NORM_HAMMING), -1}),
                 found.distances);
@@ -176,7 +176,7 @@ TEST_F(IIB_MappedIndex_Files, altered_files_are_named)
         expectRefused(file.name, Error::StsError);
     }
     {
-        // another index's, of the same shape
+        // a file of another index, of the same shape
         const TemporaryFolder other;
         MappedIndex::create(other.name, LEVELS)->add(Mat(randomDescriptors(99, 1, BYTES)));
         const RestoredFile file(segment(2));
@@ -197,7 +197,7 @@ TEST_F(IIB_MappedIndex_Files, altered_files_are_named)
     expectError(Error::StsParseError, manifest.name, [&] { MappedIndex::open(folder.name); });
 }
 
-//! The bytes with the hash at `position` made that of what is before it.
+//! The bytes with the hash at `position` corrected for the bytes before it.
 std::string sealed(const std::string& bytes, size_t position)
 {
     cv::iib::Fnv1a hash;
@@ -205,7 +205,7 @@ std::string sealed(const std::string& bytes, size_t position)
     return with(bytes, position, hash.value());
 }
 
-// Files that no call writes, all checksums right. Positions: see manifest.hpp and code_segment.hpp.
+// Files that no call writes, with right checksums. See manifest.hpp and code_segment.hpp for positions.
 TEST_F(IIB_MappedIndex_Files, impossible_numbers_are_refused)
 {
     index->remove({1, 5});
@@ -221,7 +221,7 @@ TEST_F(IIB_MappedIndex_Files, impossible_numbers_are_refused)
         manifest.write(sealed(with(manifest.bytes, change.first, change.second), seal));
         expectError(Error::StsParseError, manifest.name, [&] { MappedIndex::open(folder.name); });
     }
-    // what the manifest claims, the segment does not have
+    // rows in the manifest that the segment does not have
     for (const std::pair<size_t, uint64>& change : std::vector<std::pair<size_t, uint64>>{
                  {entries + 8, (uint64)1 << 39}, {entries + 16, (uint64)1 << 39}})
     {
@@ -236,7 +236,7 @@ TEST_F(IIB_MappedIndex_Files, impossible_numbers_are_refused)
         const std::string hash = readFile(first.name).substr(segmentSeal, 8);
         manifest.write(sealed(std::string(manifest.bytes).replace(entries + 24, 8, hash), seal));
     };
-    // rows whose sum is right beyond 64 bits
+    // rows whose sum is right modulo 2^64
     writeBoth(with(with(with(first.bytes, rows, (uint64)1 << 63), rows + 8, (uint64)1 << 63), rows + 16, 57));
     expectRefused(first.name);
     for (int layout : {0, 3, 1 << 24})
@@ -244,23 +244,23 @@ TEST_F(IIB_MappedIndex_Files, impossible_numbers_are_refused)
         writeBoth(with(first.bytes, checkedBlocks - 4, layout, 4));
         expectRefused(first.name);
     }
-    // one checksum for all: unusual, but right
+    // one checksum for all blocks: unusual, but valid
     writeBoth(with(first.bytes, checkedBlocks, INT_MAX, 4));
     EXPECT_TRUE(expected(images, queries, 3, {1, 5}) == search(*MappedIndex::open(folder.name), queries, 3));
 }
 
-#ifndef _WIN32  // which refuses to delete it
-// A file that is mapped must not be shortened; to delete or replace it is harmless.
+#ifndef _WIN32  // Windows refuses to delete mapped files
+// Deleting or replacing a mapped file is harmless.
 TEST_F(IIB_MappedIndex_Files, mapped_segments_outlive_their_names)
 {
-    const Found before = search(*index, queries, 3);
+    const Neighbours before = search(*index, queries, 3);
     std::remove(segment(1).c_str());
     ASSERT_EQ(0, std::rename(segment(2).c_str(), segment(4).c_str()));
     EXPECT_TRUE(before == search(*index, queries, 3));
 }
 #endif
 
-// A C string ends at its first zero: another folder would be made.
+// A C string ends at its first zero byte, so another folder would be made.
 TEST_F(IIB_MappedIndex_Files, names_of_folders_are_bytes_without_a_zero)
 {
     const String zero = folder.name + String("/a\0b", 4);

@@ -34,7 +34,7 @@ TEST_F(IIB_MappedIndex, one_segment_alone)
     EXPECT_THROW(search(*index, queries.colRange(0, 41), 1), cv::Exception);
 }
 
-// The rows and distances of a thousand million neighbours would take 12 GB for each query.
+// The rows and distances of a billion neighbours would take 12 GB for each query.
 TEST_F(IIB_MappedIndex, more_neighbours_than_there_can_be_are_refused)
 {
     expectError(Error::StsOutOfRange, "k is 1000000000, but there are 2163 descriptors",
@@ -87,7 +87,7 @@ TEST_F(IIB_MappedIndex, removed_images_are_not_found)
 TEST_F(IIB_MappedIndex, readers_see_the_commit_that_they_opened)
 {
     const Ptr<MappedIndex> reader = MappedIndex::open(folder.name);
-    const Found before = search(*reader, queries, 3);
+    const Neighbours before = search(*reader, queries, 3);
     index->add(queries);
     index->remove({0});
     EXPECT_TRUE(before == search(*reader, queries, 3));
@@ -110,11 +110,11 @@ TEST_F(IIB_MappedIndex, mistakes)
     EXPECT_EQ(8, MappedIndex::open(folder.name)->images());
 }
 
-// What one instruction set packed, another reads: on machines and under pins where baseline and widest pack differently.
+// Effective only where the baseline and the widest instruction set pack differently.
 TEST_F(IIB_MappedIndex, other_instruction_sets_read_it)
 {
     const bool before = useOptimized();
-    const Found wanted = expected(images, queries, 3);
+    const Neighbours wanted = expected(images, queries, 3);
     for (bool optimized : {false, true})
     {
         const TemporaryFolder other;

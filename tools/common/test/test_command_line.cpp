@@ -40,7 +40,7 @@ TEST(CommandLine, defaults_and_repetition)
     EXPECT_EQ(Words({"x"}), lineOf({"-out", "x"}).all("out"));
 }
 
-TEST(CommandLine, mistakes_are_told)
+TEST(CommandLine, mistakes_are_reported)
 {
     EXPECT_EQ("unknown option --point (--help lists them)", messageOf([] { lineOf({"--point=3"}); }));
     EXPECT_EQ("option --out needs a value", messageOf([] { lineOf({"--out"}); }));

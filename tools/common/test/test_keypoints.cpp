@@ -41,7 +41,7 @@ TEST(Keypoints, dark_images_give_corners_of_a_lower_threshold)
 {
     cv::Mat bright(200, 200, CV_8UC1);
     cv::randu(bright, 0, 256);
-    const cv::Mat dark = bright / 16;  // differences of 15 at most
+    const cv::Mat dark = bright / 16;  // differences are at most 15
     const std::vector<cv::KeyPoint> many = fastCorners(bright, 32, 50);
     EXPECT_GE(many.size(), 50u);
     for (const cv::KeyPoint& k : many)

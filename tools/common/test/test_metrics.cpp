@@ -28,7 +28,7 @@ TEST(Metrics, projection_and_its_scale)
     EXPECT_NEAR((60 + 4 + 5) / 1.11, q.x, 1e-12);
     EXPECT_NEAR((-6 + 60 + 7) / 1.11, q.y, 1e-12);
 
-    const double h = 1e-5;  // the area that a small square becomes, by differences
+    const double h = 1e-5;  // side of a small square, whose projected area gives the scale
     const cv::Point2d dx = (project(H, p + cv::Point2d(h, 0)) - q) / h;
     const cv::Point2d dy = (project(H, p + cv::Point2d(0, h)) - q) / h;
     EXPECT_NEAR(std::sqrt(std::abs(dx.cross(dy))), localScale(H, p), 1e-4);
@@ -50,7 +50,7 @@ TEST(Metrics, regions_correspond_by_location_and_size)
     const cv::Matx33d twice(2, 0, 0, 0, 2, 0, 0, 0, 1);
     EXPECT_TRUE(correspond(point(10, 10, 8), point(20, 22, 16), twice, 3));
     EXPECT_FALSE(correspond(point(10, 10, 8), point(20, 24, 16), twice, 3));
-    // Areas of one to two are an overlap error of 50 %: 16 / sqrt(2) = 11.3.
+    // A ratio of areas of 2 is an overlap error of 50 %: 16 / sqrt(2) = 11.3.
     EXPECT_TRUE(correspond(point(10, 10, 8), point(20, 20, 11.4f), twice, 3));
     EXPECT_FALSE(correspond(point(10, 10, 8), point(20, 20, 11.2f), twice, 3));
     EXPECT_FALSE(correspond(point(10, 10, 8), point(20, 20, 22.7f), twice, 3));
@@ -59,7 +59,7 @@ TEST(Metrics, regions_correspond_by_location_and_size)
 TEST(Metrics, correspondences_are_one_to_one_and_as_many_as_can_be)
 {
     const cv::Matx33d eye = cv::Matx33d::eye();
-    // Taken by nearness, the first would leave nothing for the second.
+    // A greedy choice of the nearest for the first point would leave none for the second.
     EXPECT_EQ(2, countCorrespondences({point(2, 0), point(5, 0)}, {point(3, 0), point(0, 0)}, eye, 3));
     EXPECT_EQ(1, countCorrespondences({point(0, 0), point(1, 0), point(2, 0)}, {point(1, 0)}, eye, 3));
     EXPECT_EQ(0, countCorrespondences({point(0, 0)}, {point(9, 0)}, eye, 3));

@@ -30,7 +30,7 @@ TEST(PairList, two_images_with_cameras_and_pose)
     EXPECT_EQ("", pairs[1].sequence);
 }
 
-TEST(PairList, broken_lines_are_told)
+TEST(PairList, broken_lines_are_reported)
 {
     const TestFolder folder;
     const std::string good = "a b 0 0" + CAMERAS + POSE, zeros = " 0 0 0 0 0 0 0 0 0";
@@ -53,7 +53,7 @@ TEST(PairList, broken_lines_are_told)
             messageOf([&] { readPairList(folder.path("none.txt"), "."); }).find("cannot be read"));
 }
 
-//! A point of space in both images, before and after they are turned upright.
+//! A scene point in both images, before and after they are rotated upright.
 TEST(PairList, turned_images_see_what_they_saw)
 {
     const cv::Size sizes[2] = {{60, 40}, {50, 70}};
@@ -80,7 +80,7 @@ TEST(PairList, turned_images_see_what_they_saw)
         }
         turnUpright(pair, images[0], images[1]);
         EXPECT_EQ(turns / 4 % 2 ? 40 : 60, images[0].cols);
-        cv::Vec3d moved = point;  // in the axes of the first camera, which turned
+        cv::Vec3d moved = point;  // in the axes of the first camera, which was rotated
         for (int i = 0; i < turns / 4; i++)
             moved = cv::Vec3d(moved[1], -moved[0], moved[2]);
         for (int which : {0, 1})

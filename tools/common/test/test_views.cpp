@@ -28,7 +28,7 @@ protected:
 
 TEST_F(ViewsTest, neighbours_of_a_folder)
 {
-    // The camera goes along x; the second is turned by a quarter about y.
+    // The camera moves along x; the second one is rotated by 90 degrees about y.
     addFolder("set/walk",
             "0 0 0 0 0 0 0 1\n1 2 0 0 0 0.70710678 0 0.70710678\n2 3 0 0 0 0 0 1\n3 4 0 0 0 0 0 1\n4 5 0 0 0 "
             "0 0 1\n"
@@ -47,7 +47,7 @@ TEST_F(ViewsTest, neighbours_of_a_folder)
     EXPECT_NEAR(1, pairs[0].rotation(2, 0), 1e-6);
     EXPECT_NEAR(-2, pairs[0].translation[2], 1e-6);
     EXPECT_NEAR(0, pairs[0].translation[0], 1e-6);
-    // Views are no sequences of a still camera.
+    // Views are not sequences of a static camera.
     EXPECT_TRUE(findPairs({folder.path("set")}).empty());
 }
 
@@ -59,7 +59,7 @@ TEST_F(ViewsTest, visits_are_paired_with_the_map)
     std::vector<std::string> found;
     for (const ViewPair& pair : pairs)
         found.push_back(pair.sequence + " " + pair.target);
-    // b is too near to x; the map's own images would be of one light.
+    // b is too near to x; pairs within the map would be under the same illumination.
     EXPECT_EQ(std::vector<std::string>({"night a-x", "night c-y"}), found);
 
     addFolder("alone/map", "a 0 0 0 0 0 0 1\nb 1 0 0 0 0 0 1\n", {"a", "b"});
@@ -90,7 +90,7 @@ TEST_F(ViewsTest, walks_are_paired_with_noon)
     EXPECT_EQ(pairs[0].rotation.t(), pairs[1].rotation);
 }
 
-TEST_F(ViewsTest, broken_files_are_told)
+TEST_F(ViewsTest, broken_files_are_reported)
 {
     addFolder("s/walk", "a 0 0 0 0 0 0 1\n", {"a"});
     const auto message = [&] { return messageOf([&] { findViewPairs({folder.path("")}); }); };

@@ -9,7 +9,7 @@ namespace {
 using namespace iib_tools;
 using cv::iib::IIB;
 
-//! Two scenes of soft random texture; every target is the reference's negative under a slanting light.
+//! Two scenes of smooth random texture; every target is the reference's negative under uneven illumination.
 class Training : public testing::Test
 {
 protected:
@@ -56,7 +56,7 @@ TEST_F(Training, keeps_what_survives_the_change_of_light)
         EXPECT_NE(2, quads(i, 1)) << "the negative reverses the order of the signed gradient";
 }
 
-// The targets are negatives: their signed gradient turns round, the magnitudes stay.
+// The targets are negatives: signed gradients change their sign, magnitudes stay.
 TEST_F(Training, adaboost_keeps_whole_quads_that_survive)
 {
     Recipe paper = recipe();
@@ -264,7 +264,7 @@ TEST(Training_Walks, pairs_of_places_under_all_lights)
         }
         camera << "]";
     }
-    // of frames 1, 2, 5 and 6, 1 and 6 are too far apart; in either direction, under four pairs of lights
+    // frames 1, 2, 5 and 6 without the pair 1 and 6, which is too far apart; both directions, four pairs of lights
     const std::vector<WalkPair> pairs = findWalkPairs({folder.path("")}, 4);
     ASSERT_EQ(5u * 2 * 4, pairs.size());
     for (const WalkPair& pair : pairs)

@@ -8,7 +8,7 @@ namespace cv::iib {
 
 namespace fs = std::filesystem;
 
-//! Whether it is one that file managers write into the folders that they show.
+//! Whether a file manager writes a file of this name into the folders that it shows.
 static bool isOfFileManager(const fs::path& path)
 {
     const fs::path name = path.filename();
@@ -17,7 +17,7 @@ static bool isOfFileManager(const fs::path& path)
 
 OutputFolder::OutputFolder(const std::string& folder, const std::function<bool(const std::string&)>& isOwn)
 {
-    const size_t end = checkedName(folder).find_last_not_of('/');  // with a slash a link is its folder
+    const size_t end = checkedName(folder).find_last_not_of('/');  // a trailing slash would hide a link
     path_ = endOfLinks(end == std::string::npos ? folder : folder.substr(0, end + 1));
     const fs::path path = systemName(path_);
     std::error_code error, unknown;
@@ -34,11 +34,11 @@ OutputFolder::OutputFolder(const std::string& folder, const std::function<bool(c
         if ((entry->is_symlink(unknown) || !entry->is_directory(unknown)) &&
                 !isOfFileManager(entry->path()) && !isOwn(name))
             CV_Error(Error::StsError,
-                    folder + " holds " + name + ", which is of no earlier run: choose another folder");
+                    folder + " holds " + name + ", which no earlier run wrote: choose another folder");
     }
     if (error)
         CV_Error(Error::StsError, folder + " cannot be read: " + error.message());
-    WholeFile probe(path_ + "/probe");  // what cannot be written is told before there is work to lose
+    WholeFile probe(path_ + "/probe");  // a read-only folder must fail before any work is done
 }
 
 OutputFolder::~OutputFolder()

@@ -7,7 +7,7 @@
 
 namespace cv::iib {
 
-//! Calls an action with each index, several at once. What one throws is thrown, and ends the rest.
+//! Calls an action with each index, in parallel. An exception ends the loop and is rethrown.
 template <typename Action> void inParallel(size_t count, Action action)
 {
     std::atomic<bool> ended(false);

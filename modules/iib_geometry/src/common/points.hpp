@@ -5,25 +5,25 @@
 
 namespace cv::iib {
 
-/** Points that a caller gave, N x 2, CV_64F.
-@throws cv::Exception that names the function and the argument, for what are no points. */
+/** A caller's points as N x 2, CV_64F.
+@throws cv::Exception that names the function and the argument if the array does not hold points. */
 Mat pointsOf(InputArray given, const char* function, const char* argument);
 
 //! @throws cv::Exception for different numbers of points.
 void checkMatched(const Mat& points1, const Mat& points2, const char* function);
 
-//! Where a transform has a point.
+//! The point mapped by a transform.
 Point2d moved(const Matx33d& by, const Point2d& point);
 
-/** What points span, N x 2, CV_64F, without the outermost fiftieth on each side: one wrong match may be far away. At least one pixel
-wide and high. */
+/** The bounding box of points, N x 2, CV_64F, without the outermost 2 % on each side: one wrong match may be far away.
+At least one pixel wide and high. */
 Rect2d spanOf(const Mat& points);
 
-/** Writes rows of numbers to a matrix, or to what has a type of its own: other numbers, or elements that are rows each, as those of
+/** Writes a matrix, converted to the output's type if that is fixed. Elements may be whole rows, as in
 std::vector<Point2f>. */
 void writeRows(const Mat& rows, OutputArray output);
 
-//! Empties what was not found; what has a fixed size, such as a Matx, becomes NaN.
+//! Empties an output; one of fixed size, such as a Matx, becomes NaN.
 void clear(OutputArray output);
 
 }  // namespace cv::iib

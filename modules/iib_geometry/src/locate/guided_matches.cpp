@@ -9,9 +9,9 @@
 namespace cv::iib {
 namespace {
 
-// Pixels: deviation of a keypoint that refineMatches placed, with that of its point, before it is learned and at least.
+// Pixels: standard deviation of a refined match before it is learned, and its lower bound.
 constexpr double REFINED = .3, LEAST_REFINED = .03;
-constexpr double MAX_RATIO = 6;  // of the sizes at which two images see a point
+constexpr double MAX_RATIO = 6;  // of a point's sizes in two images
 
 }  // namespace
 
@@ -50,7 +50,7 @@ std::vector<Match> guidedMatches(const Views& views, const std::vector<size_t>& 
         const Frame& frame, const Affine3d& pose)
 {
     const Rect2d inside(Point2d(), Size2d(views.own.image.pixels.size()) / views.own.scale);
-    std::map<int, std::pair<double, Match>> best;  // of a point: logarithm of the ratio of sizes, place
+    std::map<int, std::pair<double, Match>> best;  // by point: log ratio of sizes, predicted match
     for (size_t view : compared)
     {
         const MapImage& image = views.map.images[view];
@@ -73,16 +73,16 @@ std::vector<Match> guidedMatches(const Views& views, const std::vector<size_t>& 
                                                Vec2f(1, float(std::exp(ratio)))}};
         }
     }
-    std::vector<Match> matches, seen;
+    std::vector<Match> matches, refined;
     for (size_t view : compared)
-        for (const auto& [number, sight] : best)
-            if (sight.second.view == int(view))
-                matches.push_back(sight.second);
+        for (const auto& [number, predicted] : best)
+            if (predicted.second.view == int(view))
+                matches.push_back(predicted.second);
     const std::vector<bool> moved = refineAgainstViews(matches, views, 1);
     for (size_t i = 0; i < matches.size(); i++)
         if (moved[i])
-            seen.push_back(matches[i]);
-    return seen;
+            refined.push_back(matches[i]);
+    return refined;
 }
 
 void learnDeviation(std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)

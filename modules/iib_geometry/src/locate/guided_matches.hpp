@@ -6,7 +6,7 @@
 
 namespace cv::iib {
 
-//! An image and those of a map, as refinement looks at them.
+//! An image and those of a map, prepared for refinement.
 struct Views
 {
     const Map& map;
@@ -14,18 +14,17 @@ struct Views
     const PreparedPicture& own;
 };
 
-/** Moves the pixels of matches to where an image shows what the map's images show, and gives those the deviation REFINED.
-@param least matches with an image of the map, for which it is done.
-@return which were moved. */
+/** Refines the pixels of matches against the map's images; refined matches get the deviation REFINED.
+@param least number of matches with an image of the map; images with fewer are skipped.
+@return which matches were refined. */
 std::vector<bool> refineAgainstViews(std::vector<Match>& matches, const Views& views, size_t least);
 
-/** Points of some of a map's images near where a pose has them: where the image shows what that one does which sees the point at
-the most similar size.
-@param compared these images. @param frame of the pose. */
+/** Finds matches near projected map points, refined against the image that sees each point at the most similar size.
+@param compared images of the map whose points are used. @param frame of the pose. */
 std::vector<Match> guidedMatches(const Views& views, const std::vector<size_t>& compared, const Lens& lens,
         const Frame& frame, const Affine3d& pose);
 
-//! Gives the matches that were refined the deviation that they have of where a pose has their points.
+//! Sets the deviation of refined matches to that of their reprojection errors.
 void learnDeviation(std::vector<Match>& matches, const Lens& lens, const Affine3d& pose);
 
 }  // namespace cv::iib

@@ -9,9 +9,9 @@ namespace cv::iib {
 namespace {
 
 constexpr int TABLES = 16;
-constexpr int COARSE = 4;  // the first part of a code that bits are taken from: coarse cells change least
-constexpr int STRONGEST = 400;     // codes an image that take part
-constexpr uint32_t FREQUENT = 64;  // of a key: what is that frequent tells nothing
+constexpr int COARSE = 4;          // bits come from the first quarter of a code: coarse cells change least
+constexpr int STRONGEST = 400;     // codes of an image that vote
+constexpr uint32_t FREQUENT = 64;  // entries of a key: more frequent keys do not discriminate
 
 int participating(const Mat& codes) { return std::min(codes.rows, STRONGEST); }
 

@@ -7,19 +7,18 @@
 
 namespace cv::iib {
 
-/** How much the images of a map look like another one: each of its codes votes for the images with a code that is the
-same in some bits, for several random choices of bits (locality-sensitive hashing). The more codes there are, the more
-bits are compared, so that a larger map takes no longer. */
+/** Finds similar images by locality-sensitive hashing. Each code votes for the map's images that have a code with the
+same random bits, in several tables. The number of bits grows with the map, so that a larger map takes no longer. */
 class ImageVoting
 {
 public:
-    //! @param codes of each image, the strongest keypoints first; may be empty.
+    //! @param codes of each image, strongest keypoints first; may be empty.
     explicit ImageVoting(const std::vector<Mat>& codes);
 
     struct Votes
     {
         std::vector<float> ofImages;
-        size_t visited;  //!< codes of the map that were looked at
+        size_t visited;  //!< number of the map's codes that were visited
     };
     Votes vote(const Mat& codes) const;
 
@@ -27,8 +26,8 @@ private:
     struct Table
     {
         std::vector<int> bits;
-        std::vector<uint32_t> begins;  //!< of each key's entries
-        std::vector<uint32_t> images;  //!< the entries, by their keys
+        std::vector<uint32_t> begins;  //!< index of each key's first entry
+        std::vector<uint32_t> images;  //!< entries sorted by key
     };
 
     static uint32_t keyOf(const uchar* code, const std::vector<int>& bits);

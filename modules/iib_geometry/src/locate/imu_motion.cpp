@@ -9,10 +9,10 @@
 namespace cv::iib {
 namespace {
 
-// Noise densities of a good MEMS sensor (EuRoC's sensor.yaml), twice as large for what the model leaves out.
+// Noise densities of a good MEMS sensor (EuRoC's sensor.yaml), doubled for unmodelled errors.
 constexpr double RATE_NOISE = 2 * 1.7e-4;              // rad/s/sqrt(Hz)
 constexpr double FORCE_NOISE = 2 * 2.0e-3;             // m/s^2/sqrt(Hz)
-constexpr double RATE_WALK = 1e-4, FORCE_WALK = 2e-3;  // of the biases in a second
+constexpr double RATE_WALK = 1e-4, FORCE_WALK = 2e-3;  // of the biases, per root second
 constexpr int64 MAX_GAP = 100000000;                   // nanoseconds between readings
 
 Matx33d turnBy(const Vec3d& vector) { return Affine3d(vector).rotation(); }
@@ -45,27 +45,27 @@ ImuState::Errors minus(const ImuState& a, const ImuState& b)
     return e;
 }
 
-void move(ImuState& s, const Vec3d& rate, const Vec3d& force, double dt, ImuState::Matrix& change)
+void advance(ImuState& s, const Vec3d& rate, const Vec3d& force, double dt, ImuState::Matrix& change)
 {
     const Vec3d turn = (rate - s.rate) * dt;
     const Matx33d middle = s.rotation * turnBy(turn / 2), one = Matx33d::eye();
-    const Vec3d felt = middle * (force - s.force);
+    const Vec3d worldForce = middle * (force - s.force);
     change = ImuState::Matrix::eye();
     setBlock(change, ImuState::TURN, ImuState::RATE, -dt * middle);
-    setBlock(change, ImuState::POSITION, ImuState::TURN, -dt * dt / 2 * crossProduct(felt));
+    setBlock(change, ImuState::POSITION, ImuState::TURN, -dt * dt / 2 * crossProduct(worldForce));
     setBlock(change, ImuState::POSITION, ImuState::VELOCITY, dt * one);
     setBlock(change, ImuState::POSITION, ImuState::FORCE, -dt * dt / 2 * middle);
     setBlock(change, ImuState::POSITION, ImuState::DOWN, dt * dt / 2 * one);
-    setBlock(change, ImuState::VELOCITY, ImuState::TURN, -dt * crossProduct(felt));
+    setBlock(change, ImuState::VELOCITY, ImuState::TURN, -dt * crossProduct(worldForce));
     setBlock(change, ImuState::VELOCITY, ImuState::FORCE, -dt * middle);
     setBlock(change, ImuState::VELOCITY, ImuState::DOWN, dt * one);
-    const Vec3d acceleration = felt + s.gravity;
+    const Vec3d acceleration = worldForce + s.gravity;
     s.position += s.velocity * dt + acceleration * (dt * dt / 2);
     s.velocity += acceleration * dt;
     s.rotation = s.rotation * turnBy(turn);
 }
 
-bool follow(const std::vector<ImuReading>& readings, int64 from, int64 to, ImuState& state,
+bool integrate(const std::vector<ImuReading>& readings, int64 from, int64 to, ImuState& state,
         ImuState::Matrix* covariance, ImuState::Matrix* change)
 {
     if (covariance)
@@ -80,12 +80,12 @@ bool follow(const std::vector<ImuReading>& readings, int64 from, int64 to, ImuSt
         const int64 end = std::min(to, b.nanoseconds);
         if (b.nanoseconds - a.nanoseconds > MAX_GAP)
             return false;
-        // the mean over the step of what is linear is its value in the middle
+        // readings are linear, so their mean over the step is their value at its middle
         const double share = (.5 * double(now - a.nanoseconds) + .5 * double(end - a.nanoseconds)) /
                              double(b.nanoseconds - a.nanoseconds);
         const double dt = double(end - now) * 1e-9;
         ImuState::Matrix step;
-        move(state, a.rate + share * (b.rate - a.rate), a.force + share * (b.force - a.force), dt, step);
+        advance(state, a.rate + share * (b.rate - a.rate), a.force + share * (b.force - a.force), dt, step);
         now = end;
         if (!covariance)
             continue;
@@ -103,9 +103,9 @@ bool follow(const std::vector<ImuReading>& readings, int64 from, int64 to, ImuSt
     return true;
 }
 
-Matx66d carried(const Matx66d& covariance, const Vec3d& way)
+Matx66d covarianceAt(const Matx66d& covariance, const Vec3d& offset)
 {
-    const Matx33d lever = -crossProduct(way);
+    const Matx33d lever = -crossProduct(offset);
     Matx66d change = Matx66d::eye();
     for (int y = 0; y < 3; y++)
         for (int x = 0; x < 3; x++)

@@ -5,11 +5,11 @@
 
 namespace cv::iib {
 
-//! How an IMU moves, and what it takes to read it.
+//! The motion of an IMU, its biases and gravity.
 struct ImuState
 {
-    //! Places of an error's parts: turn about the world's axes (rad), position (m), velocity (m/s), biases of rate (rad/s) and
-    //! force (m/s^2), gravity (m/s^2).
+    //! Offsets of an error's parts: rotation about the world's axes (rad), position (m), velocity (m/s), biases of rate
+    //! (rad/s) and force (m/s^2), gravity (m/s^2).
     enum Part
     {
         TURN = 0,
@@ -29,23 +29,23 @@ struct ImuState
     Vec3d gravity;                      //!< m/s^2
 };
 
-//! A state moved by an error, and the error that moves `b` to `a`.
+//! A state changed by an error, and the error that changes `b` to `a`.
 ImuState plus(const ImuState& state, const ImuState::Errors& errors);
 ImuState::Errors minus(const ImuState& a, const ImuState& b);
 
-/** Moves a state by a reading that holds for dt seconds (Forster et al., On-manifold preintegration, 2017, section V):
+/** Integrates a constant reading over dt seconds (Forster et al., On-manifold preintegration, 2017, section V):
     R' = R Exp(w dt),   v' = v + (R f + g) dt,   p' = p + v dt + (R f + g) dt^2 / 2,
-with rate w and force f less their biases, and R in the middle of the turn.
-@param change gets the derivatives of the new errors by the old ones, in each block to the lowest order of dt. */
-void move(ImuState& state, const Vec3d& rate, const Vec3d& force, double dt, ImuState::Matrix& change);
+with rate w and force f less their biases, and R at the middle of the rotation.
+@param change receives the derivatives of the new errors by the old ones, each block to the lowest order of dt. */
+void advance(ImuState& state, const Vec3d& rate, const Vec3d& force, double dt, ImuState::Matrix& change);
 
-/** Moves a state from one time to another; readings are linear between their times. False if they do not reach that far or have a
-gap. @param covariance of the state, if not null; then change gets how errors change on the way. */
-bool follow(const std::vector<ImuReading>& readings, int64 from, int64 to, ImuState& state,
+/** Integrates readings, interpolated linearly, from one time to another; false if they do not span it or have a gap.
+@param covariance of the state, or null; if not null, `change` receives the derivatives as in advance(). */
+bool integrate(const std::vector<ImuReading>& readings, int64 from, int64 to, ImuState& state,
         ImuState::Matrix* covariance, ImuState::Matrix* change);
 
-/** The covariance of a place and of a turn, that of another place of the same body: dp' = dp - [way]x dw.
-@param way there, along the world's axes. */
-Matx66d carried(const Matx66d& covariance, const Vec3d& way);
+/** The covariance of another point of a rigid body, and of its rotation: dp' = dp - [offset]x dw.
+@param offset of the point, along the world's axes. */
+Matx66d covarianceAt(const Matx66d& covariance, const Vec3d& offset);
 
 }  // namespace cv::iib

@@ -13,23 +13,23 @@
 namespace cv::iib {
 namespace {
 
-constexpr int64 MAX_ALONE = int64(3e9);  // nanoseconds without an image
-constexpr int64 MAX_TIME = int64(4e18);
-constexpr size_t FIRST_FRAMES = 8, LEAST_FRAMES = 4;  // with poses, that the start is found from
-constexpr int64 APART = 200000000;                    // nanoseconds between these
+constexpr int64 MAX_WITHOUT_POSE = int64(3e9);        // nanoseconds
+constexpr int64 MAX_TIME = int64(4e18);               // nanoseconds
+constexpr size_t FIRST_FRAMES = 8, LEAST_FRAMES = 4;  // with poses, that initialize the filter
+constexpr int64 LEAST_INTERVAL = 200000000;           // nanoseconds between these
 constexpr double GRAVITY = 9.81;                      // m/s^2
-constexpr double TOGETHER = 5;  // points of the map err together: variances are so many times as large
-constexpr double MEDIAN_SQUARED = 2.37;  // of three standard normal numbers
-constexpr double SLOWLY = 2;             // variance over that of what scatters from image to image
-constexpr double LEAST_SCALE = .01;      // of deviations, also of images that do not scatter at all
-// Of six standard normal numbers one in a hundred is larger; one in eight.
+constexpr double CORRELATED = 5;         // factor of variances: errors of the map's points are correlated
+constexpr double MEDIAN_SQUARED = 2.37;  // of chi^2 with three degrees of freedom
+constexpr double SLOW_ERRORS = 2;        // variance of all errors over that of the scatter
+constexpr double LEAST_SCALE = .01;      // of standard deviations, even without any scatter
+// Of chi^2 with six degrees of freedom, one value in a hundred is larger; one in eight.
 constexpr double MAX_SQUARED = 16.8, USUAL_SQUARED = 10;
-// So much more than usual, summed: four surprises in a row end a run. At its end two of six images do, or three of more.
+// Limits of the cumulative sum: four outliers in a row end a run; at its end two of six images do, or three of more.
 constexpr double MOST_EXCESS = 27, EXCESS_AT_END = 2;
-constexpr size_t FEW = 8;    // images that agree by chance
-constexpr size_t MANY = 20;  // images that agree because readings were right until then
+constexpr size_t FEW = 8;    // images that may agree by chance
+constexpr size_t MANY = 20;  // images that agree only while the readings are right
 
-//! What an image tells of the IMU.
+//! The pose of the IMU at an image.
 struct ImuFrame
 {
     int64 nanoseconds;
@@ -37,19 +37,19 @@ struct ImuFrame
     Matx66d covariance;
 };
 
-//! A frame of the IMU's, as the filter has it before and after its image, and how errors came there.
+//! The filter's state before and after an image, and the derivatives of its errors since the last one.
 struct Step
 {
     ImuState expected, state;
     ImuState::Matrix expectedCovariance, covariance, change;
 };
 
-//! Where a number of a pose, position and turn as in covariances of images, is in a state's error.
-int place(int i) { return i < 3 ? ImuState::POSITION + i : ImuState::TURN + i - 3; }
+//! The index in a state's error of coordinate i of a pose: position, then rotation.
+int stateIndex(int i) { return i < 3 ? ImuState::POSITION + i : ImuState::TURN + i - 3; }
 
-/** Takes a measured pose into a state: position and turn about the world's axes with their covariance (Kalman 1960). With H the rows
-of these six and P the state's covariance, the gain is K = P H' (H P H' + R)^-1, and P' = P - K H P.
-@return its innovation's squared length in standard deviations, whose square is chi^2 of six degrees of freedom. */
+/** Updates a state by a measured pose: position and rotation about the world's axes (Kalman 1960). With H the rows of
+these six and P the state's covariance, the gain is K = P H' (H P H' + R)^-1, and P' = P - K H P.
+@return the innovation's squared Mahalanobis length: chi^2 with six degrees of freedom. */
 double update(const Affine3d& pose, const Matx66d& measured, ImuState& state, ImuState::Matrix& covariance)
 {
     ImuState seen = state;
@@ -61,14 +61,14 @@ double update(const Affine3d& pose, const Matx66d& measured, ImuState& state, Im
     Vec6d offset;
     for (int i = 0; i < 6; i++)
     {
-        offset[i] = difference[place(i)];
+        offset[i] = difference[stateIndex(i)];
         for (int row = 0; row < ImuState::SIZE; row++)
-            columns(row, i) = covariance(row, place(i));
+            columns(row, i) = covariance(row, stateIndex(i));
         for (int k = 0; k < 6; k++)
-            sum(i, k) = covariance(place(i), place(k)) + TOGETHER * measured(i, k);
+            sum(i, k) = covariance(stateIndex(i), stateIndex(k)) + CORRELATED * measured(i, k);
     }
     Matx66d inverse = sum.inv(DECOMP_CHOLESKY);
-    // A pose that is too far off counts as little as it takes to be likely.
+    // The gain of an outlier is reduced until it is plausible.
     const double squared = offset.dot(inverse * offset);
     if (squared > MAX_SQUARED)
         inverse *= MAX_SQUARED / squared;
@@ -79,9 +79,9 @@ double update(const Affine3d& pose, const Matx66d& measured, ImuState& state, Im
     return squared;
 }
 
-/** Gravity g and the velocities v, by linear least squares (Qin, Li and Shen, VINS-Mono, 2018, section V), since rotations are known:
+/** Estimates gravity g and velocities v by linear least squares (Qin, Li and Shen, VINS-Mono, 2018, section V):
     p' - p - moved = v T + g T^2 / 2,   v' - v - gained = g T
-of neighbours T apart, between which readings alone move by `moved` and gain a velocity. False if there are no readings. */
+for neighbours T apart. The readings alone give `moved` and `gained`. False if readings are missing. */
 bool findStart(const std::vector<int64>& times, const std::vector<Affine3d>& poses,
         const std::vector<ImuReading>& readings, ImuState& start)
 {
@@ -93,7 +93,7 @@ bool findStart(const std::vector<int64>& times, const std::vector<Affine3d>& pos
         ImuState moved;  // without gravity and velocity
         moved.rotation = from.rotation();
         moved.position = from.translation();
-        if (!follow(readings, times[size_t(i)], times[size_t(i) + 1], moved, nullptr, nullptr))
+        if (!integrate(readings, times[size_t(i)], times[size_t(i) + 1], moved, nullptr, nullptr))
             return false;
         const double seconds = double(times[size_t(i) + 1] - times[size_t(i)]) * 1e-9;
         for (int axis = 0; axis < 3; axis++)
@@ -116,27 +116,27 @@ bool findStart(const std::vector<int64>& times, const std::vector<Affine3d>& pos
     return checkRange(start.gravity);
 }
 
-//! What the readings say of frames from one on, which has a pose.
+//! The result of filtering from one frame with a pose onwards.
 struct Run
 {
     enum Verdict
     {
         NO_READINGS,  //!< between the first frames
-        SHORT,        //!< fewer poses than a start takes
+        SHORT,        //!< too few poses to initialize the filter
         CONTRADICTS,
         AGREES
     } verdict = NO_READINGS;
-    std::vector<Step> steps;  //!< of frames in order, if it agrees
-    bool ended = false;       //!< by images that readings contradict
+    std::vector<Step> steps;  //!< of frames in order, if the run agrees
+    bool ended = false;       //!< by images that the readings contradict
 };
 
-//! The filter. A run ends where readings have a gap, three seconds after the last pose, and before poses that they contradict.
+//! Runs the filter. A run ends at a gap of readings, three seconds after the last pose, and before contradicted poses.
 Run filtered(const std::vector<ImuFrame>& frames, const std::vector<ImuReading>& readings, size_t first)
 {
     std::vector<int64> times;
     std::vector<Affine3d> seen;
     for (size_t i = first; i < frames.size() && seen.size() < FIRST_FRAMES; i++)
-        if (frames[i].pose && (times.empty() || frames[i].nanoseconds - times.back() >= APART))
+        if (frames[i].pose && (times.empty() || frames[i].nanoseconds - times.back() >= LEAST_INTERVAL))
         {
             times.push_back(frames[i].nanoseconds);
             seen.push_back(*frames[i].pose);
@@ -158,11 +158,11 @@ Run filtered(const std::vector<ImuFrame>& frames, const std::vector<ImuReading>&
     run.steps.push_back(step);
     int64 last = frames[first].nanoseconds;
     double excess = 0;                               // Page's cumulative sum (1954) of innovations
-    size_t images = 1, agreed = 1, agreedSteps = 1;  // with poses; of these and of steps until the sum rose
-    for (size_t i = first + 1; i < frames.size() && frames[i].nanoseconds - last <= MAX_ALONE; i++)
+    size_t images = 1, agreed = 1, agreedSteps = 1;  // with poses; images and steps until the sum rose
+    for (size_t i = first + 1; i < frames.size() && frames[i].nanoseconds - last <= MAX_WITHOUT_POSE; i++)
     {
-        if (!follow(readings, frames[i - 1].nanoseconds, frames[i].nanoseconds, step.state, &step.covariance,
-                    &step.change))
+        if (!integrate(readings, frames[i - 1].nanoseconds, frames[i].nanoseconds, step.state,
+                    &step.covariance, &step.change))
             break;
         step.expected = step.state;
         step.expectedCovariance = step.covariance;
@@ -191,8 +191,8 @@ Run filtered(const std::vector<ImuFrame>& frames, const std::vector<ImuReading>&
     return run;
 }
 
-/** The smoother: states of a run by all of its images, in place. From the last back, x += G (x' - expected x') with
-G = P F' (expected P')^-1 and F how errors change (Rauch, Tung and Striebel 1965). */
+/** Smooths the states of a run by all of its images, in place. From the last back, x += G (x' - expected x') with
+G = P F' (expected P')^-1 and F the derivatives of errors (Rauch, Tung and Striebel 1965). */
 void smooth(std::vector<Step>& steps)
 {
     for (size_t i = steps.size() - 1; i-- > 0;)
@@ -206,26 +206,26 @@ void smooth(std::vector<Step>& steps)
     }
 }
 
-//! A turn of a pose from another as a vector about the world's axes.
+//! The rotation from one pose to another as a vector about the world's axes.
 Vec3d turnFrom(const Affine3d& from, const Affine3d& to)
 {
     return Affine3d(to.rotation() * from.rotation().t(), Vec3d()).rvec();
 }
 
-/* Images that scatter less than their covariances tell would agree with any readings: then variances are what they scatter about
- parabolas through four in a row, and motion adds to that. Errors that change slowly do not scatter, so several times as much. */
+/** Limits covariances to the scatter of poses (third differences of four in a row, motion included): images with too
+wide covariances would agree with any readings. Slow errors do not scatter; SLOW_ERRORS allows for them. */
 void limitToScatter(std::vector<ImuFrame>& frames)
 {
     std::vector<const ImuFrame*> seen;
     for (const ImuFrame& frame : frames)
         if (frame.pose)
             seen.push_back(&frame);
-    std::vector<double> squared[2];  // of positions and of turns, in what is told
+    std::vector<double> squared[2];  // Mahalanobis lengths of the differences of positions and of rotations
     for (size_t i = 0; i + 3 < seen.size(); i++)
     {
         const ImuFrame* const* const four = &seen[i];
         Vec3d off[2];
-        Matx66d told = Matx66d::zeros();
+        Matx66d variance = Matx66d::zeros();
         for (int a = 0; a < 4; a++)
         {
             double weight = 1;
@@ -234,56 +234,56 @@ void limitToScatter(std::vector<ImuFrame>& frames)
                     weight *= 1e9 / double(four[a]->nanoseconds - four[b]->nanoseconds);
             off[0] += weight * (four[a]->pose->translation() - four[0]->pose->translation());
             off[1] += weight * turnFrom(*four[0]->pose, *four[a]->pose);
-            told += weight * weight * four[a]->covariance;
+            variance += weight * weight * four[a]->covariance;
         }
         for (int k = 0; k < 2; k++)
             squared[k].push_back(
-                    off[k].dot(told.get_minor<3, 3>(3 * k, 3 * k).inv(DECOMP_CHOLESKY) * off[k]));
+                    off[k].dot(variance.get_minor<3, 3>(3 * k, 3 * k).inv(DECOMP_CHOLESKY) * off[k]));
     }
     Matx66d scale = Matx66d::eye();
     for (int k = 0; k < 6; k++)
         if (!squared[k / 3].empty())
-            scale(k, k) =
-                    std::clamp(std::sqrt(SLOWLY * median(squared[k / 3]) / MEDIAN_SQUARED), LEAST_SCALE, 1.);
+            scale(k, k) = std::clamp(
+                    std::sqrt(SLOW_ERRORS * median(squared[k / 3]) / MEDIAN_SQUARED), LEAST_SCALE, 1.);
     for (ImuFrame& frame : frames)
         frame.covariance = scale * frame.covariance * scale;
 }
 
-//! Where the image's pose has the IMU.
+//! The IMU's pose by an image's pose.
 ImuFrame imuFrame(int64 time, const Location& image, const Affine3d& cameraFromImu)
 {
     if (!image.found)
         return {time, std::nullopt, {}};
     const Affine3d camera = inverse(image.cameraFromWorld);
     return {time, camera * cameraFromImu,
-            carried(image.covariance, camera.rotation() * cameraFromImu.translation())};
+            covarianceAt(image.covariance, camera.rotation() * cameraFromImu.translation())};
 }
 
-//! The covariance of the camera's pose by a state's.
+//! The covariance of the camera's pose in a state.
 Matx66d ofCamera(const Step& step, const Affine3d& imuFromCamera)
 {
     Matx66d covariance;
     for (int i = 0; i < 6; i++)
         for (int k = 0; k < 6; k++)
-            covariance(i, k) = step.covariance(place(i), place(k));
-    return carried(covariance, step.state.rotation * imuFromCamera.translation());
+            covariance(i, k) = step.covariance(stateIndex(i), stateIndex(k));
+    return covarianceAt(covariance, step.state.rotation * imuFromCamera.translation());
 }
 
-//! Whether an image's pose is one, and its covariance tells how much it counts.
-bool isWeighed(const Location& image)
+//! Whether an image's pose is finite and its covariance is positive definite.
+bool isValid(const Location& image)
 {
     Vec6d variances;
     return checkRange(image.cameraFromWorld.matrix) && checkRange(image.covariance) &&
            eigen(image.covariance, variances) && variances[5] > 0;
 }
 
-//! Also that their differences do not overflow.
+//! Checks that times rise, and that their differences do not overflow.
 void checkTimes(const std::vector<int64>& times, const char* what)
 {
     for (size_t i = 0; i < times.size(); i++)
         if (times[i] > MAX_TIME || times[i] < -MAX_TIME || (i > 0 && times[i] <= times[i - 1]))
             CV_Error(Error::StsBadArg,
-                    format("%s %d has the time %s: times are nanoseconds, of at most 19 digits, and rise",
+                    format("%s %d has the time %s: times must be nanoseconds, of at most 19 digits, and rise",
                             what, int(i), std::to_string(times[i]).c_str()));
 }
 
@@ -307,13 +307,13 @@ std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& 
     const Matx33d turn = imuFromCamera.rotation();
     if (!checkRange(imuFromCamera.matrix) || !(norm(turn * turn.t() - Matx33d::eye()) < .01) ||
             determinant(turn) < 0)
-        CV_Error(Error::StsBadArg, "imuFromCamera is not a turn and a shift, or not finite");
+        CV_Error(Error::StsBadArg, "imuFromCamera must be a finite rotation and translation");
     std::vector<ImuFrame> frames;
     for (size_t i = 0; i < images.size(); i++)
     {
-        if (images[i].found && !isWeighed(images[i]))
-            return format("image %d has a pose or a covariance that is none (not finite, or zero), so that "
-                          "it cannot be weighed against the readings: all poses stay as they are",
+        if (images[i].found && !isValid(images[i]))
+            return format("image %d has an invalid pose or covariance (not finite, or zero), so that it "
+                          "cannot be weighed against the readings: all poses stay as they are",
                     int(i));
         frames.push_back(imuFrame(times[i], images[i], inverse(imuFromCamera)));
     }
@@ -324,7 +324,7 @@ std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& 
         Matx66d covariance;
     };
     std::vector<std::optional<Smooth>> smoothed(frames.size());
-    size_t agree = 0, contradict = 0, tooFew = 0;  // images with poses; too few in a row agree by chance too
+    size_t agree = 0, contradict = 0, tooFew = 0;  // images with poses; a few in a row may agree by chance
     for (size_t i = 0; i < frames.size();)
     {
         Run run;
@@ -337,7 +337,7 @@ std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& 
             continue;
         smooth(run.steps);
         size_t count = 0;
-        Matx66d ofImages;  // of the last image with a pose: no filter tells what images have in common
+        Matx66d ofImages;  // of the last image with a pose: the filter does not see errors that images share
         for (i = first; i < first + run.steps.size(); i++)
         {
             const Step& step = run.steps[i - first];
@@ -348,7 +348,7 @@ std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& 
                     images[i].found ? ofImages : ofImages + ofCamera(step, imuFromCamera)};
         }
         (count > FEW ? agree : tooFew) += count;
-        i += run.ended;  // its image is contradicted
+        i += run.ended;  // skips the contradicted image
     }
     if (contradict > 0 && agree <= contradict + tooFew)
         return "the readings of the IMU contradict the images, whose poses stay as they are: check the IMU's "

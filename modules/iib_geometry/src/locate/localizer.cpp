@@ -13,15 +13,15 @@
 namespace cv::iib {
 namespace {
 
-constexpr size_t SHORTLIST = 20, CANDIDATES = 5;  // of the map's images: by votes, and of these by matches
-constexpr size_t NEAREST = 2;                     // of the map's images, to a prior
+constexpr size_t SHORTLIST = 20, CANDIDATES = 5;  // images of the map: by votes, then by matches
+constexpr size_t NEAREST = 2;                     // images of the map that are matched for a prior
 constexpr double VOTING_SCALES[] = {1, .5, 2};
-constexpr double SHARE_CERTAIN = .5;  // of matches in views that agree: other images need not be compared
+constexpr double SHARE_CERTAIN = .5;  // of inliers among matches in views: no other image is tried
 constexpr int IN_VIEWS = 2000;        // keypoints of an image that is matched in views
-constexpr int RANKING = 200;          // strongest codes of an image, whose matches rank the shortlist
-constexpr double GATE = .1;  // of the longer side: how far from where a prior has them points are looked for
+constexpr int RANKING = 200;          // strongest codes of an image, which rank the shortlist
+constexpr double GATE = .1;           // of the longer side: search radius around a predicted point
 
-//! Which keypoints (rows) may match which points (columns): those near where the prior has them.
+//! Mask of keypoints (rows) near the projections of points (columns).
 Mat gate(const Features& features, const std::vector<Point3d>& points, const Camera& camera,
         const Affine3d& prior)
 {
@@ -31,8 +31,8 @@ Mat gate(const Features& features, const std::vector<Point3d>& points, const Cam
     for (int y = 0; y < mask.rows; y++)
         for (int x = 0; x < mask.cols; x++)
         {
-            const Point2d way = places[size_t(x)] - features.pixels[size_t(y)];
-            mask.at<uchar>(y, x) = std::abs(way.x) < limit && std::abs(way.y) < limit ? 255 : 0;
+            const Point2d offset = places[size_t(x)] - features.pixels[size_t(y)];
+            mask.at<uchar>(y, x) = std::abs(offset.x) < limit && std::abs(offset.y) < limit ? 255 : 0;
         }
     return mask;
 }
@@ -40,23 +40,22 @@ Mat gate(const Features& features, const std::vector<Point3d>& points, const Cam
 void checkPoints(int points)
 {
     if (points < 0)
-        CV_Error(Error::StsBadArg, format("keypoints that are looked for are 1 or more, or 0 for as many as "
-                                          "the map's images have, not %d",
-                                           points));
+        CV_Error(Error::StsBadArg,
+                format("points is %d: it must be 0, for as many as the map's images have, or more", points));
 }
 
-//! What describes images for a map, after all that may be wrong with what is asked of it.
-Ptr<IIB> checkedDescriber(const Map& map, int points, bool lines)
+//! Checks the arguments, then creates the map's extractor.
+Ptr<IIB> checkedExtractor(const Map& map, int points, bool lines)
 {
     checkPoints(points);
     if (lines)
         findSegments(Picture());
     if (lines && map.lines.empty())
-        CV_Error(Error::StsError, "the map has no lines: make it with lines, or look for none");
-    const Ptr<IIB> iib = describerOf(map.orbAndAkaze, points ? points : map.keypoints);
+        CV_Error(Error::StsError, "the map has no lines: make it with lines, or localize without lines");
+    const Ptr<IIB> iib = extractorOf(map.orbAndAkaze, points ? points : map.keypoints);
     for (const MapImage& image : map.images)
         if (image.codes.cols != iib->descriptorSize())
-            CV_Error(Error::StsError, "the map's codes are not those of this version: make it again");
+            CV_Error(Error::StsError, "the map's codes are of another version: make the map again");
     return iib;
 }
 
@@ -71,7 +70,7 @@ std::vector<Mat> codesOf(const Map& map)
 }  // namespace
 
 ImageLocator::ImageLocator(const Map& map, int points, bool lines)
-    : map_(map), lines_(lines), iib_(checkedDescriber(map, points, lines)),
+    : map_(map), lines_(lines), iib_(checkedExtractor(map, points, lines)),
       matcher_(HierarchicalMatcher::createRecommended()), votes_(codesOf(map)), pictures_(map.images.size()),
       mapError_(mapError(map))
 {
@@ -79,8 +78,7 @@ ImageLocator::ImageLocator(const Map& map, int points, bool lines)
         depths_.push_back(medianDistance(inCamera(map.seenBy(image), image.cameraFromWorld)));
 }
 
-//! The images of the map nearest to a pose.
-std::vector<size_t> ImageLocator::near(const Affine3d& pose) const
+std::vector<size_t> ImageLocator::nearestImages(const Affine3d& pose) const
 {
     std::vector<double> distances;
     for (size_t i = 0; i < depths_.size(); i++)
@@ -89,7 +87,7 @@ std::vector<size_t> ImageLocator::near(const Affine3d& pose) const
     return best(depths_.size(), NEAREST, [&](size_t a, size_t b) { return distances[a] < distances[b]; });
 }
 
-std::vector<size_t> ImageLocator::similar(const Mat& codes) const
+std::vector<size_t> ImageLocator::similarImages(const Mat& codes) const
 {
     const std::vector<float> voted = votes_.vote(codes).ofImages;
     std::vector<size_t> counts(voted.size());
@@ -150,12 +148,12 @@ bool ImageLocator::isMirrored(
     features.camera = camera;
     double& centre = features.camera.parameters[focalsOf(camera.model)];
     centre = camera.size.width - centre;
-    const std::vector<Match> matches = matchesOf(features, similar(features.codes), nullptr);
+    const std::vector<Match> matches = matchesOf(features, similarImages(features.codes), nullptr);
     return matches.size() >= LEAST_INLIERS &&
            countInliers(matches, features.camera) > std::max(found.location.inliers, (int)LEAST_INLIERS);
 }
 
-std::vector<size_t> ImageLocator::similarInViews(const ImageViews& image) const
+std::vector<size_t> ImageLocator::similarImagesInViews(const ImageViews& image) const
 {
     std::vector<float> most(map_.images.size());
     for (double scale : VOTING_SCALES)
@@ -163,7 +161,7 @@ std::vector<size_t> ImageLocator::similarInViews(const ImageViews& image) const
         std::vector<float> angles;
         for (int degrees = 0; degrees < 360; degrees += 30)
             angles.push_back((float)degrees);
-        for (const Described& turned : image.fewOnce(View::reduced(scale), angles))
+        for (const Described& turned : image.coarseOnce(View::reduced(scale), angles))
         {
             if (turned.codes.empty() || turned.codes.cols != iib_->descriptorSize())
                 continue;
@@ -179,8 +177,8 @@ void ImageLocator::locateInViews(
         const Camera& camera, const Mat& image, const Mat& mask, LocatedImage& found) const
 {
     const ImageViews views(image, mask, IN_VIEWS);
-    found.compared = similarInViews(views);
-    LocatedImage best = found;  // where a pattern repeats, images of other places match as well
+    found.compared = similarImagesInViews(views);
+    LocatedImage best = found;  // all candidates are tried: repeated patterns match at wrong places too
     for (size_t k : found.compared)
     {
         if (map_.images[k].picture.pixels.empty())
@@ -218,12 +216,12 @@ LocatedImage ImageLocator::find(
         found.segments = findSegments(found.features.picture);
     if (prior)
     {
-        found.compared = near(*prior);
+        found.compared = nearestImages(*prior);
         locate(camera, prior, found);
     }
     if (!found.location.found)
     {
-        found.compared = similar(found.features.codes);
+        found.compared = similarImages(found.features.codes);
         locate(camera, nullptr, found);
     }
     const bool isClear = found.location.inliers > SHARE_CERTAIN * (double)found.location.matches;
@@ -246,7 +244,7 @@ LocatedImage ImageLocator::find(
     return found;
 }
 
-Location inFile(Location location, const Photograph& image)
+Location asStored(Location location, const Photograph& image)
 {
     const Upright upright(image.pixels.size(), image.orientation);
     if (location.found)
@@ -289,7 +287,7 @@ Location Localizer::localize(
         InputArray image, const Camera& camera, const Affine3d* prior, int orientation, InputArray mask) const
 {
     const Photograph photograph(image.getMat(), orientation, mask.getMat());
-    return inFile(impl_->locator.find(photograph, camera, prior).location, photograph);
+    return asStored(impl_->locator.find(photograph, camera, prior).location, photograph);
 }
 
 }  // namespace cv::iib

@@ -6,9 +6,9 @@
 namespace cv::iib {
 namespace {
 
-const double MOST_TILT = 1;  // steep views would take three times as long
+const double MOST_TILT = 1;  // tilted views would take three times as long
 const int FEATURES = 2000;
-const double REACH = .05;  // of the longer side: distance of a keypoint from the match that it moves with
+const double REACH = .05;  // of the longer side: largest distance of a keypoint from its nearest match
 
 }  // namespace
 

@@ -7,10 +7,10 @@
 
 namespace cv::iib {
 
-/** Where points of a map are seen in an image that was taken from nearer, farther, aside or rotated: the image is matched with one of the map's
-images in views of both, and the keypoints of that image move as the nearest match does.
-@param view number of the map's image, whose picture must be there.
-@return with the numbers of the matches that they move with as keypoints, and the distances from those in pixels as bits; none if the images do not match in any view. */
+/** Matches an image with one of a map's images in views of both, and transfers the keypoints of the map's image like
+their nearest match. Finds points at another zoom, rotation or tilt.
+@param view number of the map's image, which must have a picture.
+@return matches; `keypoint` is the number of the nearest match, `bits` the distance from it in pixels. */
 std::vector<Match> matchesInViews(const Map& map, size_t view, const ImageViews& image);
 
 }  // namespace cv::iib

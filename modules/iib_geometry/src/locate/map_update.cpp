@@ -11,24 +11,24 @@
 namespace cv::iib {
 namespace {
 
-constexpr double APART = .1;   // of two images at one place, as distance() has it
-constexpr double KNOWN = .5;   // share of an image's codes: with more inliers, the map knows the light there
-constexpr size_t LIGHTS = 8;   // added images that a map keeps so near each other
-constexpr uchar PATIENCE = 8;  // updates in a row that do not find a code, before it is dropped
-constexpr size_t NEIGHBOURS = 10;  // added images that each is matched with
+constexpr double ONE_PLACE = .1;   // largest distance() of two images at one place
+constexpr double KNOWN = .5;       // of an image's codes: with more inliers, the map knows this illumination
+constexpr size_t MAX_ADDED = 8;    // added images that a map keeps at one place
+constexpr uchar MAX_MISSES = 8;    // consecutive updates without a code, after which it is dropped
+constexpr size_t NEIGHBOURS = 10;  // added images that each added image is matched with
 
 bool atOnePlace(const LocatedImage& seen, const PosedImage& other)
 {
-    return distance(seen.location.cameraFromWorld, other.cameraFromWorld, seen.depth) <= APART;
+    return distance(seen.location.cameraFromWorld, other.cameraFromWorld, seen.depth) <= ONE_PLACE;
 }
 
-//! Counts for each code whether this update looked for it and found it; returns how many nobody finds any more.
+//! Counts the misses of each code that this update expected to see. Returns the number of dropped codes.
 int countMisses(Map& map, const std::vector<LocatedImage>& all)
 {
-    std::vector<std::vector<uchar>> looked, hit;
+    std::vector<std::vector<uchar>> expected, hit;
     for (const MapImage& image : map.images)
     {
-        looked.emplace_back(image.sees.size(), uchar(0));
+        expected.emplace_back(image.sees.size(), uchar(0));
         hit.emplace_back(image.sees.size(), uchar(0));
     }
     for (const LocatedImage& seen : all)
@@ -40,7 +40,7 @@ int countMisses(Map& map, const std::vector<LocatedImage>& all)
             const std::vector<Point2d> places =
                     lens.project(inCamera(map.seenBy(map.images[i]), seen.location.cameraFromWorld));
             for (size_t k = 0; k < places.size(); k++)
-                looked[i][k] |= picture.contains(places[k]);  // not NaN, behind the camera
+                expected[i][k] |= picture.contains(places[k]);  // false for NaN, behind the camera
         }
         for (const Match& m : seen.agreeing)
             hit[size_t(m.view)][size_t(m.row)] = 1;
@@ -55,10 +55,10 @@ int countMisses(Map& map, const std::vector<LocatedImage>& all)
                 misses = 0;
                 map.images[i].used = map.updates;
             }
-            else if (looked[i][k] && ++misses >= PATIENCE)
+            else if (expected[i][k] && ++misses >= MAX_MISSES)
             {
                 map.images[i].sees[k] = -1;
-                misses = 0;  // it may see another point
+                misses = 0;  // the keypoint may get another point
                 dropped++;
             }
         }
@@ -76,8 +76,8 @@ bool isKnown(const Map& map, const LocatedImage& seen)
     return false;
 }
 
-//! Those in a light that the map does not know, APART from each other.
-std::vector<const LocatedImage*> chosen(const Map& map, const std::vector<LocatedImage>& all)
+//! The images under illumination that the map does not know, one for each place.
+std::vector<const LocatedImage*> imagesToAdd(const Map& map, const std::vector<LocatedImage>& all)
 {
     std::vector<const LocatedImage*> result;
     for (const LocatedImage& seen : all)
@@ -88,8 +88,8 @@ std::vector<const LocatedImage*> chosen(const Map& map, const std::vector<Locate
     return result;
 }
 
-/** Pairs of images to be matched: each added one with those of the map that it was compared with and with added ones near it.
-@param first of the added images, which are the map's last. */
+/** Pairs of images to match: each added image with the map's images it was compared with, and added images near it.
+@param first index of the first added image; added images are the map's last. */
 std::vector<std::pair<size_t, size_t>> pairsOf(
         const Map& map, size_t first, const std::vector<const LocatedImage*>& added)
 {
@@ -110,14 +110,14 @@ std::vector<std::pair<size_t, size_t>> pairsOf(
     return pairs;
 }
 
-//! Matches the last images of a map with others, and places what their keypoints see.
+//! Matches the added images of a map and triangulates their points.
 void addPoints(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
 {
     MatchedRays matched = matchPairs(map.images, pairs);
     std::set<size_t> involved;
     for (const auto& [a, b] : pairs)
         involved.insert({a, b});
-    std::set<int> touched;  // points that new keypoints may see
+    std::set<int> touched;  // points that may get new keypoints
     for (const RayMatch& link : matched.links)
         touched.insert(matched.rays[link.b].point);
     touched.erase(-1);
@@ -133,7 +133,7 @@ void addPoints(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
     triangulate(map, matched.rays, matched.links);
 }
 
-//! Of more than LIGHTS added images at one place, removes the one that has not helped for longest.
+//! Keeps the MAX_ADDED most recently used of the added images at one place.
 void makeRoom(Map& map, const std::vector<const LocatedImage*>& added)
 {
     for (const LocatedImage* seen : added)
@@ -143,7 +143,7 @@ void makeRoom(Map& map, const std::vector<const LocatedImage*>& added)
             if (image.added && atOnePlace(*seen, image))
                 here.emplace_back(image.used, image.name);
         std::sort(here.begin(), here.end());
-        for (size_t n = 0; n + LIGHTS < here.size(); n++)
+        for (size_t n = 0; n + MAX_ADDED < here.size(); n++)
             map.images.erase(std::find_if(map.images.begin(), map.images.end(),
                     [&](const MapImage& image) { return image.name == here[n].second; }));
     }
@@ -158,7 +158,7 @@ struct MapUpdate::Impl
     {
     }
 
-    const MapFolder folder;  // is locked before the map is read
+    const MapFolder folder;  // first, so that it is locked before the map is read
     const Map map;
     const ImageLocator locator;
     const std::vector<Camera> cameras;
@@ -192,7 +192,7 @@ Location MapUpdate::add(
         impl_->checkOpen();
         checkName(name);
         if (!impl_->names.insert(name).second)
-            CV_Error(Error::StsBadArg, "an image of the name '" + name + "' is a part of the update already");
+            CV_Error(Error::StsBadArg, "an image named '" + name + "' is already a part of the update");
     }
     try
     {
@@ -202,7 +202,7 @@ Location MapUpdate::add(
         impl_->checkOpen();
         if (found.location.found)
             impl_->seen.push_back(found);
-        return inFile(found.location, photograph);
+        return asStored(found.location, photograph);
     }
     catch (...)
     {
@@ -216,15 +216,15 @@ MapUpdate::Counts MapUpdate::commit()
 {
     const std::lock_guard<std::mutex> lock(impl_->mutex);
     impl_->checkOpen();
-    Map map = impl_->map;  // stays as it is for another try, if this one cannot be written
+    Map map = impl_->map;  // a copy, so that commit() may be called again if writing fails
     std::vector<LocatedImage>& seen = impl_->seen;
-    // The order in which threads came changes nothing.
+    // Sorted, since the result must not depend on the threads' order.
     std::sort(seen.begin(), seen.end(),
             [](const LocatedImage& a, const LocatedImage& b) { return a.features.name < b.features.name; });
     Counts counts;
     counts.localized = int(seen.size());
     map.updates++;
-    const std::vector<const LocatedImage*> added = chosen(map, seen);
+    const std::vector<const LocatedImage*> added = imagesToAdd(map, seen);
     counts.added = int(added.size());
     counts.dropped = countMisses(map, seen);
     const size_t first = map.images.size();
@@ -232,7 +232,7 @@ MapUpdate::Counts MapUpdate::commit()
     const auto taken = [&](const MapImage& image) {
         return image.name.compare(0, folder.size(), folder) == 0;
     };
-    while (std::any_of(map.images.begin(), map.images.end(), taken))  // the model's own may be called so
+    while (std::any_of(map.images.begin(), map.images.end(), taken))  // the model may have such names
         folder = "updates/" + folder;
     for (const LocatedImage* s : added)
     {

@@ -12,17 +12,17 @@
 namespace cv::iib {
 namespace {
 
-constexpr size_t SUREST = 300;  // matches of the fewest different bits, among which the pose is looked for
-constexpr double MAX_ERROR = .006;   // of the longer side, from where the pose has an inlier's point
-constexpr double LEAST_SHARE = .02;  // in an unknown place a few matches agree by chance
-constexpr double MAX_BOUND = .1;     // of the distance to the points: three standard deviations of the place
-constexpr size_t WORTH = 16;         // matches with an image of the map, for which they are refined
-constexpr int ROUNDS = 4;            // what agrees is looked for again after each refinement
-constexpr int GUIDED_ROUNDS = 8;     // at most, along the pose
-constexpr double STILL = .1;         // pixels that what is seen moves by a look, if it is the last one
-constexpr int LINE_ROUNDS = 2;       // lines are looked for again after the first refinement by them
+constexpr size_t RANSAC_MATCHES = 300;  // matches with the fewest differing bits
+constexpr double MAX_ERROR = .006;      // of the longer side: inlier threshold
+constexpr double LEAST_SHARE = .02;     // of inliers: in an unknown place a few matches agree by chance
+constexpr double MAX_UNCERTAINTY = .1;  // of the scene's distance: three standard deviations of the position
+constexpr size_t LEAST_REFINED = 16;    // matches with an image of the map; images with fewer are not refined
+constexpr int ROUNDS = 4;               // of refining the pose and finding inliers
+constexpr int GUIDED_ROUNDS = 8;        // of guided matching, at most
+constexpr double CONVERGED = .1;        // pixels of motion that end guided matching
+constexpr int LINE_ROUNDS = 2;          // of matching lines and refining the pose
 
-//! Keypoints that match a point in several images of the map count once.
+//! Drops repeated matches of a keypoint with one point, in several images of the map.
 std::vector<Match> withoutRepeated(std::vector<Match> matches)
 {
     const auto key = [](const Match& m) { return std::make_pair(m.keypoint, m.number); };
@@ -43,17 +43,17 @@ int keypointsOf(const std::vector<Match>& matches)
 
 double limitOf(const Camera& camera) { return MAX_ERROR * std::max(camera.size.width, camera.size.height); }
 
-//! The matches with the fewest different bits, among which a pose is looked for.
+//! The matches with the fewest differing bits, for RANSAC.
 std::vector<Match> mostSimilar(const std::vector<Match>& matches)
 {
     std::vector<Match> similar;
-    for (size_t i : best(matches.size(), SUREST,
+    for (size_t i : best(matches.size(), RANSAC_MATCHES,
                  [&](size_t a, size_t b) { return matches[a].bits < matches[b].bits; }))
         similar.push_back(matches[i]);
     return similar;
 }
 
-//! Matches under a pose, as errorsOfWrongMatches() has them.
+//! Matches under a pose, for errorsOfWrongMatches().
 class PlacedMatches
 {
 public:
@@ -83,7 +83,7 @@ private:
     const Lens& lens_;
 };
 
-//! A pose in the making, in its Frame's axes. Each step says whether there still is one; if not, the location's reason says why.
+//! Estimates a pose in steps, in its Frame's axes. Each step returns false if it fails, and sets the location's reason.
 class PoseSearch
 {
 public:
@@ -98,7 +98,7 @@ public:
         location_.matches = int(matches_.size());
     }
 
-    //! By the keypoints that match, which are refined on the way.
+    //! Estimates the pose from matched keypoints, and refines both.
     bool byKeypoints()
     {
         location_.reason = "too few matches agree";
@@ -112,27 +112,27 @@ public:
             location_.inliers = keypointsOf(inliers_);
             if (location_.inliers < LEAST_INLIERS + LEAST_SHARE * double(location_.matches))
                 return false;
-            if (round == 0 && !isMoreThanChance())
+            if (round == 0 && !isSignificant())
             {
-                location_.reason = "the matches that agree are no more than chance may give";
+                location_.reason = "the matches that agree could be random";
                 return false;
             }
             if (round == 1)
             {
-                if (found_.prepared.image.pixels.empty())  // else it was for a prior
+                if (found_.prepared.image.pixels.empty())  // not yet prepared for a prior
                     found_.prepared = PreparedPicture(found_.features.picture);
-                refineAgainstViews(inliers_, views_, WORTH);
+                refineAgainstViews(inliers_, views_, LEAST_REFINED);
                 matches_ = inliers_;
             }
         }
         return true;
     }
 
-    //! And by what is seen where the pose has the map's points.
+    //! Adds matches found near the projected map points.
     bool byGuidedMatches()
     {
-        double moved = STILL;
-        for (int look = 0; look < GUIDED_ROUNDS && !(moved < STILL); look++)
+        double moved = CONVERGED;
+        for (int round = 0; round < GUIDED_ROUNDS && !(moved < CONVERGED); round++)
         {
             const Affine3d before = pose_;
             used_ = near(matches_);
@@ -169,7 +169,7 @@ public:
         Vec3d variances;
         eigen(covariance_.get_minor<3, 3>(0, 0), variances);
         location_.reason = "the pose is uncertain";
-        return 3 * std::sqrt(variances[0]) <= MAX_BOUND * depth();
+        return 3 * std::sqrt(variances[0]) <= MAX_UNCERTAINTY * depth();
     }
 
     void writeResult() const
@@ -194,8 +194,8 @@ private:
         return within(limit_, matches, lens_, pose_);
     }
 
-    //! Whether the matches that agree are not what points of different matches might give, or are in a few places alone.
-    bool isMoreThanChance() const
+    //! Whether random matches would hardly agree as well, counted in matches and in places.
+    bool isSignificant() const
     {
         const PlacedMatches matches(matches_, lens_);
         const int sampleSize = 4;
@@ -230,8 +230,8 @@ private:
     const Frame frame_;
     const Lens lens_;
     const double limit_;                 //!< pixels
-    std::vector<Match> all_, matches_;   //!< every code's; each keypoint's once
-    std::vector<Match> inliers_, used_;  //!< near the pose; that made it
+    std::vector<Match> all_, matches_;   //!< with and without repeated ones
+    std::vector<Match> inliers_, used_;  //!< used_: that the pose was refined by
     Affine3d pose_;
     Matx66d covariance_;
 };

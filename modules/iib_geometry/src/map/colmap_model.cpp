@@ -19,14 +19,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr uint64_t LARGEST_SIDE = (1 << 16) - 1;  // pixels, of an image
-constexpr double ROUNDED = 1e-4;                  // of a rotation's numbers, that a few digits may be off
+constexpr double ROUNDING = 1e-4;                 // rotations may come rounded to a few digits
 
-/** A file of a model. Binary: numbers one after another, lowest byte first as on every machine that this runs on; before a list,
-how long it is. Text: a line each, but for comments, and an image's keypoints on one more. */
+/** A file of a model. Binary: little-endian numbers, as on every supported machine; a list starts with its length.
+Text: one line a record and a second line for an image's keypoints; lines of comments are skipped. */
 class ModelFile
 {
 public:
-    //! @param leastBytes of a camera or image.
+    //! @param leastBytes smallest size of a record: a camera or an image.
     ModelFile(const std::string& folder, const std::string& name, bool text, uint64_t leastBytes)
         : name_(name + (text ? ".txt" : ".bin")), text_(text)
     {
@@ -59,13 +59,13 @@ public:
         return value;
     }
 
-    //! Goes on to the next camera or image; false at the end.
+    //! Moves to the next camera or image; false at the end.
     bool nextRecord()
     {
         while (text_)
             if (!nextLine())
                 return false;
-            else if (more())  // not blank
+            else if (more())  // skips blank lines
                 return true;
         expect(records_ > 0 || left_ == 0);
         return records_-- > 0;
@@ -82,13 +82,13 @@ public:
         return model;
     }
 
-    //! Of an image; its keypoints follow.
+    //! Reads the name of an image; its keypoints follow.
     std::string name()
     {
         std::string letters;
         if (text_)
         {
-            std::getline(line_ >> std::ws, letters);  // it may have blanks
+            std::getline(line_ >> std::ws, letters);  // names may contain spaces
             letters.erase(letters.find_last_not_of(" \r") + 1);
             expect(nextLine());
             return letters;
@@ -103,12 +103,12 @@ public:
     bool more() { return text_ ? !(line_ >> std::ws).eof() : items_-- > 0; }
 
 private:
-    //! How many things follow, each of so many bytes or more.
+    //! Reads the length of a list whose elements have at least so many bytes.
     uint64_t count(uint64_t leastBytes)
     {
-        const uint64_t things = next<uint64_t>();
-        expect(things <= left_ / leastBytes);
-        return things;
+        const uint64_t length = next<uint64_t>();
+        expect(length <= left_ / leastBytes);
+        return length;
     }
 
     bool nextLine()
@@ -177,11 +177,11 @@ std::vector<PosedImage> readImages(const std::string& folder, bool text)
     return images;
 }
 
-//! That readModel takes what will be written.
+//! Checks that readModel will accept the model.
 void checkModel(const std::vector<PosedImage>& images, const std::vector<Point3d>& points)
 {
     if (images.empty())
-        CV_Error(Error::StsBadArg, "a model has one image or more, not none");
+        CV_Error(Error::StsBadArg, "a model needs at least one image");
     std::set<std::string> names;
     for (const PosedImage& image : images)
     {
@@ -190,36 +190,35 @@ void checkModel(const std::vector<PosedImage>& images, const std::vector<Point3d
             CV_Error(code, "image " + image.name + " " + why);
         };
         if (!names.insert(image.name).second)
-            refuse(Error::StsBadArg, "is there twice: names are distinct");
+            refuse(Error::StsBadArg, "is there twice: names must be distinct");
         const Lens checked(image.camera);
         if (uint64_t(std::max(image.camera.size.width, image.camera.size.height)) > LARGEST_SIDE)
             refuse(Error::StsBadArg,
-                    format("has a camera of %d x %d pixels: a side has %d at most", image.camera.size.width,
+                    format("has a camera of %d x %d pixels: at most %d a side", image.camera.size.width,
                             image.camera.size.height, int(LARGEST_SIDE)));
         const Matx33d rotation = image.cameraFromWorld.rotation();
         if (!checkRange(image.cameraFromWorld.matrix))
             refuse(Error::StsBadArg, "has a pose that is not finite");
-        if (!(norm(rotation * rotation.t() - Matx33d::eye()) < ROUNDED && determinant(rotation) > 0))
+        if (!(norm(rotation * rotation.t() - Matx33d::eye()) < ROUNDING && determinant(rotation) > 0))
             refuse(Error::StsBadArg,
                     "has a pose that scales, shears or mirrors: give a rotation and a translation");
         if (image.sees.size() > image.pixels.size())
-            refuse(Error::StsUnmatchedSizes, format("has %d keypoints, and tells of %d what they see",
+            refuse(Error::StsUnmatchedSizes, format("has %d keypoints, but %d indices of their points",
                                                      int(image.pixels.size()), int(image.sees.size())));
         for (const Point2d& pixel : image.pixels)
             if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y))
                 refuse(Error::StsBadArg, "has a keypoint that is not finite");
         for (int point : image.sees)
             if (point >= int(points.size()))
-                CV_Error(
-                        Error::StsOutOfRange, format("a keypoint of image %s sees point %d, and there are %d",
-                                                      image.name.c_str(), point, int(points.size())));
+                CV_Error(Error::StsOutOfRange, format("a keypoint of image %s sees point %d of %d points",
+                                                       image.name.c_str(), point, int(points.size())));
     }
     for (const Point3d& point : points)
         if (!checkRange(Vec3d(point)))
             CV_Error(Error::StsBadArg, "a point of the model is not finite");
 }
 
-//! Adds numbers to the end of a file, lowest byte first.
+//! Appends numbers to the content of a file, little-endian.
 template <typename... Ts> void put(std::string& file, Ts... values)
 {
     (file.append(reinterpret_cast<const char*>(&values), sizeof(values)), ...);
@@ -245,7 +244,7 @@ std::vector<PosedImage> readModel(const std::string& folder)
     }
     catch (const Exception& e)
     {
-        CV_Error(Error::StsError, folder + " is no COLMAP model, or a damaged one: " + e.err + hint);
+        CV_Error(Error::StsError, folder + " is not a COLMAP model, or damaged: " + e.err + hint);
     }
 }
 
@@ -298,7 +297,7 @@ void writeModel(
                 uint64_t(tracks[i].size() / 8));
         seen += tracks[i];
     }
-    // All are written before one is replaced, since a model of two runs would be none.
+    // Every file is written before any is replaced: files of two runs would not fit together.
     const std::pair<const char*, const std::string*> contents[] = {
             {"cameras.bin", &cameras}, {"images.bin", &posed}, {"points3D.bin", &seen}};
     std::vector<std::unique_ptr<WholeFile>> files;

@@ -7,15 +7,15 @@
 
 namespace cv::iib {
 
-/** The images of a COLMAP model, binary or text, of all versions of COLMAP. What they see are numbers that images of one point
-share; where the points are is not read.
-@throws cv::Exception if there is none, it is damaged, or it has a camera that Lens does not know. */
+/** Reads the images of a COLMAP model, binary or text, of any version of COLMAP. Keypoints of one point share its
+number; the points' positions are not read.
+@throws cv::Exception if the model is missing or damaged, or has a camera that Lens does not know. */
 std::vector<PosedImage> readModel(const std::string& folder);
 
 //! @throws cv::Exception for a name that no image in a COLMAP model can have.
 void checkName(const std::string& name);
 
-//! The index of a camera among others; how many there are, if it is not there.
+//! The index of a camera in a list, or the list's size if the camera is not in it.
 inline size_t indexOf(const Camera& camera, const std::vector<Camera>& cameras)
 {
     return size_t(std::find_if(cameras.begin(), cameras.end(), [&](const Camera& other) {
@@ -24,7 +24,7 @@ inline size_t indexOf(const Camera& camera, const std::vector<Camera>& cameras)
     }) - cameras.begin());
 }
 
-//! The cameras of images, each once.
+//! The distinct cameras of images.
 template <typename Images> std::vector<Camera> camerasOf(const Images& images)
 {
     std::vector<Camera> cameras;

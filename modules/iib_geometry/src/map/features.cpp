@@ -10,7 +10,7 @@ namespace cv::iib {
 namespace {
 
 #if CV_VERSION_MAJOR < 5
-//! The strongest points of ORB and of AKAZE in turn, with sizes that one scale factor suits.
+//! The strongest keypoints of ORB and AKAZE in turn, with sizes adapted to one scale factor.
 class OrbAndAkaze : public Feature2D
 {
 public:
@@ -74,7 +74,7 @@ void extract(IIB& iib, const Mat& image, const Mat& mask, Features& features, in
     features.picture.scale *= scale;
 }
 
-Ptr<IIB> describerOf(bool orbAndAkaze, int points)
+Ptr<IIB> extractorOf(bool orbAndAkaze, int points)
 {
     if (!orbAndAkaze)
     {
@@ -88,7 +88,7 @@ Ptr<IIB> describerOf(bool orbAndAkaze, int points)
     iib->setOrientation(IIB::ORIENTATION_KEYPOINT);
     return iib;
 #else
-    CV_Error(Error::StsNotImplemented, "OpenCV 5 has no AKAZE: maps of its points need OpenCV 4");
+    CV_Error(Error::StsNotImplemented, "OpenCV 5 has no AKAZE: maps of AKAZE points need OpenCV 4");
 #endif
 }
 

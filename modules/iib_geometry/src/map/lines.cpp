@@ -13,19 +13,20 @@
 namespace cv::iib {
 namespace {
 
-constexpr double DEVIATION = .7;                 // pixels, of two segments' ends together
-constexpr double MAX_UNCERTAINTY = .05;          // of a line's ends, in parts of their distance
-constexpr double MAX_ERROR = 3;                  // pixels between a line and a segment that it was made of
-constexpr double MAX_TURN = 5;                   // degrees between a segment and a line as it is seen
-constexpr double MIN_SHARE = 1. / 3;             // of the shorter of both, that overlaps
-constexpr double NEAREST = .05;                  // of the farther end's depth: where lines are cut off
-constexpr int MAPPED_BITS = 60, SEEN_BITS = 80;  // in which codes of one line differ, in like and other light
+constexpr double DEVIATION = .7;         // pixels: standard deviation of two segments' ends together
+constexpr double MAX_UNCERTAINTY = .05;  // of a line's ends, as a share of their distance
+constexpr double MAX_ERROR = 3;          // pixels between a line and a segment of its track
+constexpr double MAX_ANGLE = 5;          // degrees between a segment and a projected line
+constexpr double MIN_OVERLAP = 1. / 3;   // of the shorter of segment and line
+constexpr double NEAR_PLANE = .05;       // share of the farther end's depth at which lines are clipped
+constexpr int MAP_BITS = 60;             // most differing bits between codes of a line in the map's images
+constexpr int QUERY_BITS = 80;           // the same under changed illumination
 
-/** The line that a track's longest segment shows, its ends where the planes through the others cut the rays to them: at the depth
-n (c' - c) / (n d), by least squares over the planes' normals n and centres c'.
-@param rays to the begin of each segment, which are the track's, and behind each to the end.
-@param first of each image's.
-@return false if it is behind a camera, or DEVIATION would move it by more than so many parts of its distance. */
+/** Triangulates a track. The ends of its longest segment get the depth n (c' - c) / (n d) along their rays: least
+squares over the planes through the other segments, with normals n and camera centres c'.
+@param rays in pairs: to the beginning of each segment, as in the track, then to its end.
+@param first index of each image's first ray.
+@return false if an end is behind its camera, or DEVIATION would move it by more than this share of its distance. */
 bool placeLine(const Track& track, const std::vector<Ray>& rays, const std::vector<size_t>& first,
         MapLine& line, double maxUncertainty)
 {
@@ -52,10 +53,10 @@ bool placeLine(const Track& track, const std::vector<Ray>& rays, const std::vect
     return true;
 }
 
-/** Pairs of lines and segments that fit, of the fewest bits that differ first, each line and each segment once.
-@param lines whose codes these are: some have several. */
-std::vector<DMatch> nearest(const std::vector<int>& lines, const Mat& codes, const Mat& segments, int maxBits,
-        const std::function<bool(int, int)>& fit)
+/** Matches lines with segments greedily, fewest differing bits first; each line and each segment is used once.
+@param lines of each code; a line may have several codes. */
+std::vector<DMatch> greedyMatches(const std::vector<int>& lines, const Mat& codes, const Mat& segments,
+        int maxBits, const std::function<bool(int, int)>& fit)
 {
     std::vector<DMatch> all, found;
     Mat_<int> bits;
@@ -96,7 +97,7 @@ void addLines(
         const std::vector<Ray> own = raysOf(i, image);
         rays.insert(rays.end(), own.begin(), own.end());
     }
-    const auto shows = [&](const Ray& ray, const MapLine& line) {
+    const auto sees = [&](const Ray& ray, const MapLine& line) {
         return !matchesOf(line, segments[ray.image].places[size_t(ray.keypoint) / 2], lenses[ray.image],
                 map.images[ray.image].cameraFromWorld, MAX_ERROR)
                         .empty();
@@ -112,10 +113,10 @@ void addLines(
         const auto fit = [&](int s, int t) {
             const Ray &one = rays[link(s, t, 0).a], &other = rays[link(s, t, 0).b];
             MapLine line;
-            return placeLine({one, other}, rays, first, line, HUGE_VAL) && shows(one, line) &&
-                   shows(other, line);
+            return placeLine({one, other}, rays, first, line, HUGE_VAL) && sees(one, line) &&
+                   sees(other, line);
         };
-        for (const DMatch& m : nearest(numbers, segments[a].codes, segments[b].codes, MAPPED_BITS, fit))
+        for (const DMatch& m : greedyMatches(numbers, segments[a].codes, segments[b].codes, MAP_BITS, fit))
             found[n].push_back(link(m.queryIdx, m.trainIdx, m.distance));
     });
     std::vector<RayMatch> links;
@@ -129,8 +130,8 @@ void addLines(
             before = track.size();
             if (!placeLine(track, rays, first, line, MAX_UNCERTAINTY))
                 track.clear();
-            track.erase(std::remove_if(track.begin(), track.end(),
-                                [&](const Ray& ray) { return !shows(ray, line); }),
+            track.erase(std::remove_if(
+                                track.begin(), track.end(), [&](const Ray& ray) { return !sees(ray, line); }),
                     track.end());
         }
         if (track.size() < 2)
@@ -148,18 +149,18 @@ std::vector<Match> matchesOf(
         const MapLine& line, const Segment& segment, const Lens& lens, const Affine3d& pose, double limit)
 {
     Point3d ends[] = {pose * line.begin, pose * line.end};
-    const double nearest = NEAREST * std::max(ends[0].z, ends[1].z);
-    for (int i : {0, 1})  // cuts off what is behind the camera
+    const double nearest = NEAR_PLANE * std::max(ends[0].z, ends[1].z);
+    for (int i : {0, 1})  // clips what is behind the camera
         if (ends[i].z < nearest && nearest > 0)
             ends[i] += (ends[1 - i] - ends[i]) * ((nearest - ends[i].z) / (ends[1 - i].z - ends[i].z));
     const std::vector<Point2d> pixels = lens.project({ends[0], ends[1]});
     const double length = norm(segment.end - segment.begin);
     const Point2d along = (segment.end - segment.begin) / length, across(-along.y, along.x);
-    // Places along the segment from its beginning, in pixels.
+    // Positions along the segment from its beginning, in pixels.
     const double from = along.dot(pixels[0] - segment.begin), to = along.dot(pixels[1] - segment.begin);
     const double begin = std::max(from, 0.), end = std::min(to, length);
-    if (!(to - from > std::cos(MAX_TURN * CV_PI / 180) * norm(pixels[1] - pixels[0])) ||
-            end - begin < MIN_SHARE * std::min(length, to - from))
+    if (!(to - from > std::cos(MAX_ANGLE * CV_PI / 180) * norm(pixels[1] - pixels[0])) ||
+            end - begin < MIN_OVERLAP * std::min(length, to - from))
         return {};
     std::vector<Match> matches;
     for (double place : {begin, end})
@@ -193,7 +194,7 @@ std::vector<Match> lineMatches(const Map& map, const std::vector<size_t>& images
     };
     const auto fit = [&](int row, int segment) { return !ends(row, segment).empty(); };
     std::vector<Match> matches;
-    for (const DMatch& m : nearest(lines, codes, segments.codes, SEEN_BITS, fit))
+    for (const DMatch& m : greedyMatches(lines, codes, segments.codes, QUERY_BITS, fit))
         for (const Match& end : ends(m.queryIdx, m.trainIdx))
             matches.push_back(end);
     return matches;

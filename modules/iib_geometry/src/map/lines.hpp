@@ -7,18 +7,18 @@
 
 namespace cv::iib {
 
-/** Triangulates the lines that images of a map see.
-@param segments of each image. @param pairs of images to be matched. */
+/** Adds triangulated lines to a map.
+@param segments of each image. @param pairs of images to match. */
 void addLines(
         Map& map, const std::vector<Segments>& segments, const std::vector<std::pair<size_t, size_t>>& pairs);
 
-/** The two places where a line and a segment begin and end to overlap, as matches of which only the error across the segment
-counts. None unless the line is seen within `limit` pixels of the segment in its direction, along a third of the shorter.
+/** Matches at both ends of the overlap of a line and a segment; only their error across the segment counts. None unless
+the projected line is within `limit` pixels of the segment, parallel to it and overlaps a third of the shorter.
 @param line in the axes of the pose. */
 std::vector<Match> matchesOf(
         const MapLine& line, const Segment& segment, const Lens& lens, const Affine3d& pose, double limit);
 
-/** Matches with the lines that some of a map's images see, near where a pose has them.
+/** Matches segments with lines of some of a map's images, near their projections.
 @param frame of the pose. */
 std::vector<Match> lineMatches(const Map& map, const std::vector<size_t>& images, const Segments& segments,
         const Lens& lens, const Frame& frame, const Affine3d& pose, double limit);

@@ -15,10 +15,10 @@ namespace {
 namespace fs = std::filesystem;
 
 const char* const FILE_NAME = "/map.iib";
-constexpr int LINE_BYTES = 32;  // of a code of LBD
+constexpr int LINE_BYTES = 32;  // of an LBD code
 const FileKind KIND = {"IIB_MAP_", 2, "a map of opencv_iib"};
 
-//! Reads or writes the parts of a map: the functions below name them once, in their order.
+//! Reads or writes the parts of a map, so that the functions below list the parts only once.
 class MapFile
 {
 public:
@@ -56,7 +56,7 @@ public:
             real(*value);
     }
 
-    //! How many parts of a list follow, each of so many bytes or more.
+    //! The length of a list whose elements have at least so many bytes.
     template <typename List> void length(List& list, uint64 least, int size = 4)
     {
         uint64 count = list.size();
@@ -95,7 +95,7 @@ private:
     CheckedWriter* const writer_ = nullptr;
 };
 
-void visit(MapFile& file, Camera& camera)
+void archive(MapFile& file, Camera& camera)
 {
     file.length(camera.model, 1);
     file.bytes(camera.model);
@@ -115,7 +115,7 @@ void visit(MapFile& file, Camera& camera)
     }
 }
 
-void visit(MapFile& file, MapImage& image, const std::vector<Camera>& cameras, size_t bytes, size_t points)
+void archive(MapFile& file, MapImage& image, const std::vector<Camera>& cameras, size_t bytes, size_t points)
 {
     file.length(image.name, 1);
     file.bytes(image.name);
@@ -142,7 +142,7 @@ void visit(MapFile& file, MapImage& image, const std::vector<Camera>& cameras, s
         file.integer(image.sees[k], 4);
         file.check(std::abs(pixel.x) + std::abs(pixel.y) < 1 << 20 && image.sizes[k] > 0 &&
                            image.sizes[k] < 1 << 20 && image.sees[k] >= 0 && size_t(image.sees[k]) < points,
-                "a keypoint sees nothing");
+                "a keypoint is invalid");
     }
     file.bytes(image.misses);
     file.matrix(image.codes, image.sees.size(), bytes);
@@ -152,12 +152,12 @@ void visit(MapFile& file, MapImage& image, const std::vector<Camera>& cameras, s
     file.integer(size.width, 4);
     file.check(!((unsigned(size.height) | unsigned(size.width)) >> 16), "an image is too large");
     file.matrix(picture, size_t(size.height), size_t(size.width));
-    const Size& whole = image.camera.size;  // of the longer sides alone, since the shorter one was rounded
+    const Size& whole = image.camera.size;  // only longer sides give the scale: the shorter was rounded
     image.picture.scale = double(std::max(picture.cols, picture.rows)) / std::max(whole.width, whole.height);
 }
 
-//! @param version of the file; the second has which points are in use, the lines, and of each image those that it sees.
-void visit(MapFile& file, Map& map, unsigned version)
+//! @param version of the file; version 2 adds the kind of points, the lines, and the lines that each image sees.
+void archive(MapFile& file, Map& map, unsigned version)
 {
     unsigned bytes = map.images.empty() ? 0 : unsigned(map.images[0].codes.cols);
     file.integer(map.keypoints, 4);
@@ -169,13 +169,13 @@ void visit(MapFile& file, Map& map, unsigned version)
     std::vector<Camera> cameras = camerasOf(map.images);
     file.length(cameras, 12);
     for (Camera& camera : cameras)
-        visit(file, camera);
+        archive(file, camera);
     file.length(map.images, 121);
     file.check(map.images.empty() || bytes > 0, "its images have no codes");
     std::set<std::string> names;
     for (MapImage& image : map.images)
     {
-        visit(file, image, cameras, bytes, map.points.size());
+        archive(file, image, cameras, bytes, map.points.size());
         file.check(names.insert(image.name).second, "two images have one name");
     }
     if (version < 2)
@@ -193,8 +193,7 @@ void visit(MapFile& file, Map& map, unsigned version)
         for (int& number : image.lines)
         {
             file.integer(number, 4);
-            file.check(number >= 0 && size_t(number) < map.lines.size(),
-                    "an image sees a line that is not there");
+            file.check(number >= 0 && size_t(number) < map.lines.size(), "an image refers to a missing line");
         }
         file.matrix(image.lineCodes, image.lines.size(), LINE_BYTES);
     }
@@ -255,7 +254,7 @@ Map readMap(const std::string& folder)
     CheckedReader file(folder + FILE_NAME, KIND);
     Map map;
     MapFile parts(file);
-    visit(parts, map, file.version());
+    archive(parts, map, file.version());
     file.seal();
     file.expectEnd();
     parts.check(map.keypoints > 0 && !map.images.empty(), "it has no images");
@@ -265,11 +264,11 @@ Map readMap(const std::string& folder)
 void writeMap(const std::string& folder, const Map& map, const std::function<void()>& last)
 {
     FileKind kind = KIND;
-    kind.version = map.orbAndAkaze || !map.lines.empty() ? 2 : 1;  // earlier programs read what they can
+    kind.version = map.orbAndAkaze || !map.lines.empty() ? 2 : 1;  // earlier programs read version 1 only
     CheckedWriter file(folder + FILE_NAME, kind);
-    Map copy = map;  // since visit() also reads, it takes no constant one; matrices are shared
+    Map copy = map;  // archive() also reads, so it needs a mutable map; matrices are shared
     MapFile parts(file);
-    visit(parts, copy, kind.version);
+    archive(parts, copy, kind.version);
     file.seal();
     file.finish();  // a full disk ends here, while nothing is replaced yet
     last();

@@ -12,53 +12,53 @@
 namespace cv::iib {
 namespace {
 
-constexpr size_t IMAGES = 32, KEYPOINTS = 500;  // at most: of a map, evenly, and the strongest of each
-constexpr double MAX_ERROR = 4;                 // pixels, of a keypoint from its point
-constexpr double LEAST_DEVIATION = .03;         // pixels
+constexpr size_t MAX_IMAGES = 32, MAX_KEYPOINTS = 500;  // of a map, of each of these images
+constexpr double MAX_ERROR = 4;                         // pixels between a keypoint and its projected point
+constexpr double LEAST_DEVIATION = .03;                 // pixels
 constexpr size_t LEAST_POINTS = 15;
-constexpr int ROUNDS = 3;  // of a pose, each with the deviation that the last one left
+constexpr int ROUNDS = 3;  // of refining a pose, each with the deviation that the last one left
 
-//! The rays that see each point of a map.
-typedef std::vector<std::vector<Ray>> Sights;
+typedef std::vector<std::vector<Ray>> RaysOfPoints;
 
-//! Of the model's own images, since those of updates were located in the map.
-std::vector<size_t> someOf(const std::vector<MapImage>& images)
+//! An even sample of the model's own images; images of updates were themselves located in the map.
+std::vector<size_t> sampleOf(const std::vector<MapImage>& images)
 {
-    std::vector<size_t> own, some;
+    std::vector<size_t> own, sample;
     for (size_t i = 0; i < images.size(); i++)
         if (!images[i].added)
             own.push_back(i);
-    const size_t count = std::min(own.size(), IMAGES);
+    const size_t count = std::min(own.size(), MAX_IMAGES);
     for (size_t n = 0; n < count; n++)
-        some.push_back(own[n * own.size() / count]);
-    return some;
+        sample.push_back(own[n * own.size() / count]);
+    return sample;
 }
 
-//! Keypoints of some images whose points two others see or more.
-std::vector<std::vector<size_t>> seenByOthers(const Map& map, const std::vector<size_t>& some)
+//! Keypoints of the sampled images whose points at least two other images see.
+std::vector<std::vector<size_t>> seenByOthers(const Map& map, const std::vector<size_t>& sample)
 {
     std::vector<int> views(map.points.size());
     for (const MapImage& image : map.images)
         for (int point : image.sees)
             views[size_t(point)]++;
-    std::vector<std::vector<size_t>> rows(some.size());
-    for (size_t n = 0; n < some.size(); n++)
+    std::vector<std::vector<size_t>> rows(sample.size());
+    for (size_t n = 0; n < sample.size(); n++)
     {
-        const std::vector<int>& sees = map.images[some[n]].sees;
-        for (size_t row = 0; row < sees.size() && rows[n].size() < KEYPOINTS; row++)
+        const std::vector<int>& sees = map.images[sample[n]].sees;
+        for (size_t row = 0; row < sees.size() && rows[n].size() < MAX_KEYPOINTS; row++)
             if (views[size_t(sees[row])] > 2)
                 rows[n].push_back(row);
     }
     return rows;
 }
 
-Sights sightsOf(const Map& map, const std::vector<size_t>& some, const std::vector<std::vector<size_t>>& rows)
+RaysOfPoints raysOfPoints(
+        const Map& map, const std::vector<size_t>& sample, const std::vector<std::vector<size_t>>& rows)
 {
     std::vector<bool> wanted(map.points.size());
-    for (size_t n = 0; n < some.size(); n++)
+    for (size_t n = 0; n < sample.size(); n++)
         for (size_t row : rows[n])
-            wanted[size_t(map.images[some[n]].sees[row])] = true;
-    Sights sights(map.points.size());
+            wanted[size_t(map.images[sample[n]].sees[row])] = true;
+    RaysOfPoints rays(map.points.size());
     for (size_t i = 0; i < map.images.size(); i++)
     {
         const MapImage& image = map.images[i];
@@ -70,32 +70,32 @@ Sights sightsOf(const Map& map, const std::vector<size_t>& some, const std::vect
                 part.sees.push_back(image.sees[row]);
             }
         for (const Ray& ray : raysOf(i, part))
-            sights[size_t(ray.point)].push_back(ray);
+            rays[size_t(ray.point)].push_back(ray);
     }
-    return sights;
+    return rays;
 }
 
-//! Keypoints of an image with the points that the others place.
-std::vector<Match> placedByOthers(
-        const MapImage& image, size_t number, const std::vector<size_t>& rows, const Sights& sights)
+//! Keypoints of an image with points that the other images triangulate.
+std::vector<Match> triangulatedByOthers(
+        const MapImage& image, size_t number, const std::vector<size_t>& rows, const RaysOfPoints& rays)
 {
     std::vector<Match> matches;
     for (size_t row : rows)
     {
         Track others;
-        for (const Ray& ray : sights[size_t(image.sees[row])])
+        for (const Ray& ray : rays[size_t(image.sees[row])])
             if (ray.image != number)
                 others.push_back(ray);
         Match match{image.pixels[row], {}};
-        if (others.size() > 1 && place(others, match.point))
+        if (others.size() > 1 && triangulatePoint(others, match.point))
             matches.push_back(match);
     }
     return matches;
 }
 
-/** How far from where the map has it an image comes to lie, as mapError() tells it; nothing if too few points tell.
-@param matches of its keypoints with points that it did not place. */
-std::optional<Vec6d> strayOf(const MapImage& image, std::vector<Match> matches)
+/** The deviation of an image's pose from that in the map, in the units of mapError(); none if too few points remain.
+@param matches of its keypoints with points that it did not triangulate. */
+std::optional<Vec6d> poseErrorOf(const MapImage& image, std::vector<Match> matches)
 {
     const Frame frame(matches);
     for (Match& m : matches)
@@ -119,8 +119,8 @@ std::optional<Vec6d> strayOf(const MapImage& image, std::vector<Match> matches)
     return Vec6d(moved[0], moved[1], moved[2], turned[0], turned[1], turned[2]);
 }
 
-//! As large a covariance of the centre, and of the turn, that is the same in all directions.
-Matx66d withoutDirection(const Matx66d& covariance)
+//! The covariance averaged over all directions, separately for centre and rotation.
+Matx66d isotropic(const Matx66d& covariance)
 {
     Matx66d same = Matx66d::zeros();
     for (int k = 0; k < 6; k++)
@@ -133,24 +133,24 @@ Matx66d withoutDirection(const Matx66d& covariance)
 
 Matx66d mapError(const Map& map)
 {
-    const std::vector<size_t> some = someOf(map.images);
-    const std::vector<std::vector<size_t>> rows = seenByOthers(map, some);
-    const Sights sights = sightsOf(map, some, rows);
-    std::vector<std::optional<Vec6d>> strays(some.size());
-    inParallel(some.size(), [&](size_t n) {
-        const MapImage& image = map.images[some[n]];
-        strays[n] = strayOf(image, placedByOthers(image, some[n], rows[n], sights));
+    const std::vector<size_t> sample = sampleOf(map.images);
+    const std::vector<std::vector<size_t>> rows = seenByOthers(map, sample);
+    const RaysOfPoints rays = raysOfPoints(map, sample, rows);
+    std::vector<std::optional<Vec6d>> errors(sample.size());
+    inParallel(sample.size(), [&](size_t n) {
+        const MapImage& image = map.images[sample[n]];
+        errors[n] = poseErrorOf(image, triangulatedByOthers(image, sample[n], rows[n], rays));
     });
     Matx66d sum = Matx66d::zeros();
     int count = 0;
-    for (const std::optional<Vec6d>& stray : strays)
-        if (stray)
+    for (const std::optional<Vec6d>& error : errors)
+        if (error)
         {
-            sum += *stray * stray->t();
+            sum += *error * error->t();
             count++;
         }
     count = std::max(count, 1);
-    return (sum + withoutDirection(sum) * (1. / count)) * (1. / count);
+    return (sum + isotropic(sum) * (1. / count)) * (1. / count);
 }
 
 Matx66d inWorld(const Matx66d& error, const Affine3d& cameraFromWorld, double depth)

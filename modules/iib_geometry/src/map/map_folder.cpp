@@ -10,10 +10,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-//! What a folder of a map holds; the first name tells that it is one.
+//! The files of a map's folder; the first one marks the folder as a map.
 const std::vector<std::string> OWN = {"map.iib", "cameras.bin", "images.bin", "points3D.bin"};
 
-//! Whether a killed process has left it.
+//! Whether a killed process left the file.
 bool isUnfinished(const std::string& name)
 {
     return std::any_of(OWN.begin(), OWN.end(), [&](const std::string& own) { return isPartOf(own, name); });
@@ -25,11 +25,11 @@ MapFolder::MapFolder(const std::string& folder)
     : folder_(folder, [&](const std::string& name) {
           if (isUnfinished(name))
           {
-              replaced_.push_back(name);
+              leftovers_.push_back(name);
               return true;
           }
           std::error_code error;
-          return std::count(OWN.begin(), OWN.end(), name) != 0 &&  // a COLMAP model alone is no map
+          return std::count(OWN.begin(), OWN.end(), name) != 0 &&  // a COLMAP model alone is not a map
                  fs::exists(systemName(endOfLinks(folder) + "/" + OWN[0]), error);
       })
 {
@@ -41,7 +41,7 @@ void MapFolder::write(const Map& map) const
         writeModel(folder_.path(), {map.images.begin(), map.images.end()}, map.points);
     });
     std::error_code error;
-    for (const std::string& name : replaced_)
+    for (const std::string& name : leftovers_)
         fs::remove(systemName(folder_.path() + "/" + name), error);
 }
 

@@ -6,19 +6,20 @@
 
 namespace cv::iib {
 
-//! A folder that a map is written to; no other process can write it meanwhile.
+//! The locked folder of a map.
 class MapFolder
 {
 public:
-    //! @throws cv::Exception if the folder holds anything but a map, cannot be made, or is locked.
+    //! @throws cv::Exception if the folder holds anything but a map, cannot be made, or another process has locked it.
     explicit MapFolder(const std::string& folder);
 
-    /** Writes the map's file and, for other programs, a COLMAP model. Who reads the map meanwhile gets the old one or the new.
-    @throws cv::Exception if it cannot be written; the old map stays then. */
+    /** Writes the map's file and, for other programs, a COLMAP model. Concurrent readers get the old map or the new
+    one.
+    @throws cv::Exception if the map cannot be written; the old map then stays. */
     void write(const Map& map) const;
 
 private:
-    std::vector<std::string> replaced_;  // files that a killed process has left
+    std::vector<std::string> leftovers_;  // unfinished files of a killed process
     const OutputFolder folder_;
 };
 

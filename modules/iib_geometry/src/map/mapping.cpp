@@ -20,13 +20,14 @@
 namespace cv::iib {
 namespace {
 
-constexpr size_t NEIGHBOURS = 20;     // images that each is matched with
-constexpr size_t MAX_TRACK = 30;      // images of a point that count as seeing the same
-constexpr double LEAST_FITTING = .1;  // of all matches; poses that contradict the images leave less
+constexpr size_t NEIGHBOURS = 20;  // images that each image is matched with
+constexpr size_t MAX_TRACK = 30;   // images of a point that count as covisible
+constexpr double LEAST_CONSISTENT =
+        .1;  // share of matches that fit the poses, unless the poses are of other images
 
 typedef std::vector<std::pair<size_t, size_t>> Pairs;
 
-//! How many points each image shares with others.
+//! The number of points that each image shares with every other.
 std::vector<std::map<size_t, int>> countShared(const std::vector<PosedImage>& images)
 {
     std::map<int, std::set<size_t>> seeing;
@@ -43,7 +44,7 @@ std::vector<std::map<size_t, int>> countShared(const std::vector<PosedImage>& im
     return shared;
 }
 
-//! Pairs of images that see the same; an image that shares no points is paired with the nearest that look the same way.
+//! Pairs of covisible images; an image that shares no points is paired with the nearest ones of similar direction.
 Pairs covisible(const std::vector<PosedImage>& images)
 {
     const std::vector<std::map<size_t, int>> shared = countShared(images);
@@ -66,13 +67,13 @@ Pairs covisible(const std::vector<PosedImage>& images)
     return {pairs.begin(), pairs.end()};
 }
 
-//! Counts the steps of several threads.
-class Steps
+//! Reports progress from several threads.
+class Progress
 {
 public:
-    Steps(size_t all, const MappingReport& report) : all_(all), report_(report) {}
+    Progress(size_t all, const MappingReport& report) : all_(all), report_(report) {}
 
-    //! @param problem of an image that is left out, or empty.
+    //! @param problem with an image that is left out, or empty.
     void step(const std::string& problem = "")
     {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -88,7 +89,7 @@ private:
     std::mutex mutex_;
 };
 
-//! Why an image is left out, behind its name; or nothing.
+//! Why an image is left out, to follow its name; empty if it is not.
 std::string problemOf(const Photograph& photograph, const Size& size)
 {
     if (photograph.pixels.empty())
@@ -110,12 +111,11 @@ Vec3d axisOf(const Affine3d& cameraFromWorld, int axis)
     return Vec3d(cameraFromWorld.rotation().row(axis).t().val);
 }
 
-/** A direction of the world that is up in many of the images, and that all see from aside: by it images are described as if none was rotated,
-those of a camera that was held upright, and those of one that looks down. */
+/** The world direction that is up in most images and roughly parallel to every image plane. Described relative to it,
+images match whether the camera was held upright or looks down. */
 Vec3d commonUp(const std::vector<MapImage>& images)
 {
-    const double agreement =
-            .1;  // what an image adds in which the direction is up, to one that sees it from aside
+    const double agreement = .1;  // weight of being up, against being parallel to the image plane
     Vec3d best;
     double most = -std::numeric_limits<double>::max();
     for (const MapImage& candidate : images)
@@ -134,7 +134,7 @@ Vec3d commonUp(const std::vector<MapImage>& images)
     return best;
 }
 
-//! Degrees by which an image is rotated against a direction of the world, or -1 where upright keypoints match as well.
+//! Degrees by which an image is rotated against a world direction; -1 where upright keypoints match as well.
 float angleTo(const Vec3d& up, const Affine3d& cameraFromWorld)
 {
     const float least = 15;
@@ -143,9 +143,10 @@ float angleTo(const Vec3d& up, const Affine3d& cameraFromWorld)
     return std::min(angle, 360 - angle) < least ? -1 : angle;
 }
 
-void describe(std::vector<MapImage>& images, const ImageReader& read, const MapOptions& options, Steps& steps)
+void describeImages(
+        std::vector<MapImage>& images, const ImageReader& read, const MapOptions& options, Progress& progress)
 {
-    const Ptr<IIB> iib = describerOf(options.orbAndAkaze, options.points);
+    const Ptr<IIB> iib = extractorOf(options.orbAndAkaze, options.points);
     const Vec3d up = commonUp(images);
     std::vector<std::string> problems(images.size());
     inParallel(images.size(), [&](size_t i) {
@@ -160,28 +161,28 @@ void describe(std::vector<MapImage>& images, const ImageReader& read, const MapO
             extract(*iib, upright.image(photograph.pixels), upright.image(photograph.mask), image,
                     options.maxSize, angleTo(up, image.cameraFromWorld));
         }
-        image.codes.create(int(image.pixels.size()), iib->descriptorSize(), CV_8U);  // also of none
+        image.codes.create(int(image.pixels.size()), iib->descriptorSize(), CV_8U);  // also without keypoints
         if (!problem.empty())
             problem = image.name + problem + ": left out of the map";
-        steps.step(problem);
+        progress.step(problem);
     });
     if (std::any_of(images.begin(), images.end(), [](const MapImage& i) { return !i.pixels.empty(); }))
         return;
     const auto first =
             std::find_if(problems.begin(), problems.end(), [](const std::string& p) { return !p.empty(); });
     CV_Error(Error::StsError,
-            "no point is found in any of the model's images: " +
-                    (first == problems.end() ? "they are empty"
-                                             : "give those of which it was made; " + *first));
+            "no keypoint was found in any of the model's images: " +
+                    (first == problems.end() ? "they show nothing"
+                                             : "give the images that it was made of; " + *first));
 }
 
 void checkOptions(const MapOptions& options)
 {
     if (options.points < 1)
-        CV_Error(Error::StsBadArg, format("points is %d: at least 1 an image is needed", options.points));
+        CV_Error(Error::StsBadArg, format("points is %d: it must be at least 1", options.points));
     if (options.maxSize != 0 && options.maxSize < 32)
         CV_Error(Error::StsBadArg,
-                format("maxSize is %d: at least 32 pixels are needed, or 0", options.maxSize));
+                format("maxSize is %d: it must be 0 or at least 32 pixels", options.maxSize));
     if (options.lines)
         findSegments(Picture());
 }
@@ -194,7 +195,7 @@ Map makeMap(const std::string& model, const ImageReader& read, const MapOptions&
     checkOptions(options);
     const std::vector<PosedImage> known = readModel(model);
     const Pairs pairs = covisible(known);
-    Steps steps(known.size() + pairs.size(), report);
+    Progress progress(known.size() + pairs.size(), report);
     Map map;
     map.keypoints = options.points;
     map.orbAndAkaze = options.orbAndAkaze;
@@ -205,12 +206,12 @@ Map makeMap(const std::string& model, const ImageReader& read, const MapOptions&
         map.images.back().camera = image.camera;
         map.images.back().cameraFromWorld = image.cameraFromWorld;
     }
-    describe(map.images, read, options, steps);
-    const MatchedRays matched = matchPairs(map.images, pairs, [&] { steps.step(); });
-    if (double(matched.fitting) <= LEAST_FITTING * double(matched.matches))
+    describeImages(map.images, read, options, progress);
+    const MatchedRays matched = matchPairs(map.images, pairs, [&] { progress.step(); });
+    if (double(matched.consistent) <= LEAST_CONSISTENT * double(matched.matches))
         CV_Error(Error::StsError,
                 format("only %d of %d matches fit the poses: is this the model of these images?",
-                        int(matched.fitting), int(matched.matches)));
+                        int(matched.consistent), int(matched.matches)));
     triangulate(map, matched.rays, matched.links);
     if (map.points.empty())
         CV_Error(Error::StsError, model + ": no point was seen from two places");

@@ -5,7 +5,7 @@
 
 namespace cv::iib {
 
-//! As buildMap does, in memory.
+//! As buildMap, in memory.
 Map makeMap(const std::string& model, const ImageReader& images, const MapOptions& options,
         const MappingReport& report);
 

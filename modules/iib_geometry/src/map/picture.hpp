@@ -7,16 +7,16 @@
 
 namespace cv::iib {
 
-//! An image in grey, reduced to 1024 pixels if its longer side has more, in which keypoints of the image are refined.
+//! A grey copy of an image, of at most 1024 pixels a side, in which its keypoints are refined.
 struct Picture
 {
     Mat pixels;        //!< CV_8U
-    double scale = 1;  //!< of its pixels by the image's
+    double scale = 1;  //!< picture size over image size
 };
 
 Picture pictureOf(const Mat& image);
 
-//! A picture as refinement looks at it, a byte a pixel.
+//! A picture prepared for refinement, one byte a pixel.
 struct PreparedPicture
 {
     PreparedImage image;
@@ -26,7 +26,7 @@ struct PreparedPicture
     explicit PreparedPicture(const Picture& picture) : image(picture.pixels), scale(picture.scale) {}
 };
 
-//! Pictures of a map's images, each prepared when it is first asked for. Threads may share one.
+//! The pictures of a map's images, each prepared on first use. Threads may share one object.
 class PreparedPictures
 {
 public:
@@ -38,14 +38,14 @@ private:
     std::vector<PreparedPicture> prepared_;
 };
 
-//! Keypoints of two images that show the same, one for one, in pixels of the images.
+//! Matched keypoints of two images, in pixels of the images.
 struct KeypointPairs
 {
     std::vector<KeyPoint> fixed, moved;
 };
 
-/** Moves the second keypoint of each pair to what the first one shows (refineMatches).
-@return whether that was found; the others stay. */
+/** Refines the second keypoint of each pair (refineMatches).
+@return whether it was refined; the others stay. */
 std::vector<bool> refine(const PreparedPicture& fixed, const PreparedPicture& moved, KeypointPairs& pairs);
 
 }  // namespace cv::iib

@@ -12,24 +12,24 @@
 namespace cv::iib {
 namespace {
 
-constexpr double MAX_ERROR = 4;  // pixels, of a match from its epipolar line
-constexpr int MASK_ROWS = 32;    // of a mask that are made at once: all are too much for the caches
-constexpr double NEAR = 2;       // pixels, within which matches are looked for once more
-constexpr int STRONGEST = 200;   // codes of an image: they tell whether the poses are the images'
-constexpr double FAR = .01;      // radians between rays that do not tell on which side they meet
+constexpr double MAX_ERROR = 4;       // pixels from the epipolar line, of any match
+constexpr double MAX_GUIDED = 2;      // pixels from the epipolar line, of a guided match
+constexpr int MASK_ROWS = 32;         // of a mask computed at once, to stay in the caches
+constexpr int STRONGEST = 200;        // codes of an image by which its pose is checked
+constexpr double MIN_CROSSING = .01;  // radians: more parallel rays may meet on either side within the noise
 
-/** Whether two rays lie in one plane with both cameras, and meet before them: the epipolar constraint d_a (way x d_b) = 0 (Hartley and
-Zisserman 2004, section 9.6), in pixels across the planes. */
-bool fitting(const Ray& a, const Ray& b)
+/** Whether two rays satisfy the epipolar constraint d_a (baseline x d_b) = 0 (Hartley and Zisserman 2004, section 9.6),
+in pixels, and meet before both cameras. */
+bool areConsistent(const Ray& a, const Ray& b)
 {
-    const Vec3d way = b.centre - a.centre, across = a.direction.cross(b.direction);
-    const Vec3d planeA = way.cross(b.direction), planeB = way.cross(a.direction);
+    const Vec3d baseline = b.centre - a.centre, across = a.direction.cross(b.direction);
+    const Vec3d planeA = baseline.cross(b.direction), planeB = baseline.cross(a.direction);
     const double product = std::abs(a.direction.dot(planeA));
     return a.scale * product < MAX_ERROR * norm(planeA) && b.scale * product < MAX_ERROR * norm(planeB) &&
-           (norm(across) < FAR || (across.dot(planeA) > 0 && across.dot(planeB) > 0));
+           (norm(across) < MIN_CROSSING || (across.dot(planeA) > 0 && across.dot(planeB) > 0));
 }
 
-//! Which rays of two images (rows and columns) may show the same: those in one plane with both cameras.
+//! Mask of the rays of two images (rows and columns) that satisfy the epipolar constraint.
 Mat nearEpipolar(const std::vector<Ray>& a, const std::vector<Ray>& b)
 {
     Mat_<float> directions(int(a.size()), 3), planes(int(b.size()), 3);
@@ -44,7 +44,7 @@ Mat nearEpipolar(const std::vector<Ray>& a, const std::vector<Ray>& b)
     {
         const Range rows(row, std::min(row + MASK_ROWS, mask.rows));
         gemm(directions.rowRange(rows), planes, 1, noArray(), 0, products, GEMM_2_T);
-        compare(abs(products), NEAR / a[0].scale, mask.rowRange(rows), CMP_LT);
+        compare(abs(products), MAX_GUIDED / a[0].scale, mask.rowRange(rows), CMP_LT);
     }
     return mask;
 }
@@ -55,8 +55,8 @@ Mat strongest(const Mat& codes) { return codes.rowRange(0, std::min(codes.rows, 
 
 double Ray::error(const Vec3d& at) const
 {
-    const Vec3d way = at - centre;
-    return scale * std::atan2(norm(way.cross(direction)), way.dot(direction));
+    const Vec3d offset = at - centre;
+    return scale * std::atan2(norm(offset.cross(direction)), offset.dot(direction));
 }
 
 std::vector<Ray> raysOf(size_t number, const PosedImage& image)
@@ -91,8 +91,7 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
         found.rays.insert(found.rays.end(), own.begin(), own.end());
     }
     std::vector<std::vector<RayMatch>> links(pairs.size());
-    // of matches that the poses did not guide, and that fit
-    std::vector<std::pair<size_t, size_t>> counts(pairs.size());
+    std::vector<std::pair<size_t, size_t>> counts(pairs.size());  // unguided matches, consistent ones
     inParallel(pairs.size(), [&](size_t n) {
         const size_t a = pairs[n].first, b = pairs[n].second;
         const Mat &codes = images[a].codes, &others = images[b].codes;
@@ -110,7 +109,7 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
             return RayMatch{m.distance, first[a] + size_t(m.queryIdx), first[b] + size_t(m.trainIdx)};
         };
         const auto fits = [&](const DMatch& m) {
-            return fitting(found.rays[linkOf(m).a], found.rays[linkOf(m).b]);
+            return areConsistent(found.rays[linkOf(m).a], found.rays[linkOf(m).b]);
         };
         counts[n] = {matches.size(), size_t(std::count_if(matches.begin(), matches.end(), fits))};
         for (const DMatch& m : guided)
@@ -121,7 +120,7 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
     for (size_t n = 0; n < pairs.size(); n++)
     {
         found.matches += counts[n].first;
-        found.fitting += counts[n].second;
+        found.consistent += counts[n].second;
         found.links.insert(found.links.end(), links[n].begin(), links[n].end());
     }
     return found;

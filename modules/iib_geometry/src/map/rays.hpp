@@ -7,39 +7,39 @@
 
 namespace cv::iib {
 
-//! A keypoint of an image, and where it is seen from and to in the world.
+//! The viewing ray of a keypoint, in the world.
 struct Ray
 {
     size_t image;
     int keypoint;
     Vec3d centre, direction;
     double scale;    //!< pixels a radian
-    int point = -1;  //!< that the keypoint sees already
+    int point = -1;  //!< number of the point that the keypoint already sees, or -1
 
-    //! Pixels from where the keypoint's point would be seen.
+    //! Distance of the ray from a point, in pixels.
     double error(const Vec3d& at) const;
 };
 
-//! The rays of an image's keypoints; NaN for those that its lens sees nothing at.
+//! The rays of an image's keypoints; NaN for pixels that its lens cannot see.
 std::vector<Ray> raysOf(size_t number, const PosedImage& image);
 
-//! Two rays, by their indices, that match.
+//! Two matching rays, by index.
 struct RayMatch
 {
     float bits;
     size_t a, b;
 };
 
-//! What matching of images gives.
+//! The result of matching pairs of images.
 struct MatchedRays
 {
-    std::vector<Ray> rays;        //!< of the images of all pairs
-    std::vector<RayMatch> links;  //!< matches among what the images' poses have near each other
-    //! Of matches of each image's strongest codes, and of those the ones that fit the poses: few if the poses are not those of the images.
-    size_t matches = 0, fitting = 0;
+    std::vector<Ray> rays;        //!< of all images in the pairs
+    std::vector<RayMatch> links;  //!< matches guided by the poses
+    //! Unguided matches of the strongest codes, and those that fit the poses: few if the poses are of other images.
+    size_t matches = 0, consistent = 0;
 };
 
-//! Matches keypoints of pairs of images. @param step is called after each pair, by several threads.
+//! Matches keypoints of pairs of images. @param step called after each pair, by several threads.
 MatchedRays matchPairs(
         const std::vector<MapImage>& images, const std::vector<std::pair<size_t, size_t>>& pairs,
         const std::function<void()>& step = [] {});

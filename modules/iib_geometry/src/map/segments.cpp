@@ -13,8 +13,8 @@ Segments findSegments(const Picture& picture)
     Segments segments;
 #ifdef IIB_LINE_DESCRIPTOR
     using namespace line_descriptor;
-    // LSD looks at the image scaled by 0.8 and divides coordinates by it, as if the middle of the first pixel stayed where
-    // it was; cv::resize keeps the image's corner.
+    // LSD scales the image by 0.8 about its corner, but divides coordinates as if the first pixel's centre stayed
+    // fixed.
     const double shift = .5 / .8 - .5, minLength = 20;
     if (picture.pixels.empty())
         return segments;
@@ -37,9 +37,9 @@ Segments findSegments(const Picture& picture)
     return segments;
 #else
     CV_UNUSED(picture);
-    CV_Error(Error::StsNotImplemented, "lines need OpenCV's module line_descriptor, without which this "
-                                       "was built: install opencv_contrib (on Debian "
-                                       "and Ubuntu: libopencv-contrib-dev) and build again");
+    CV_Error(Error::StsNotImplemented,
+            "this library was built without OpenCV's module line_descriptor, which lines need: install "
+            "opencv_contrib (on Debian and Ubuntu: libopencv-contrib-dev) and build again");
 #endif
 }
 

@@ -5,7 +5,7 @@
 
 namespace cv::iib {
 
-//! A straight edge in pixels of an image, as seen; the brighter side is always on the same hand.
+//! A straight edge in pixels of an image, directed so that the brighter side is always on the same hand.
 struct Segment
 {
     Point2d begin, end;
@@ -14,11 +14,11 @@ struct Segment
 struct Segments
 {
     std::vector<Segment> places;
-    Mat codes;  //!< LBD, a row of 32 bytes each
+    Mat codes;  //!< LBD, one row of 32 bytes a segment
 };
 
-/** Segments of 20 pixels or more (LSD), described by LBD. Threads may call it at once.
-@throws cv::Exception, also for an empty picture, if this library was built without OpenCV's module line_descriptor. */
+/** Finds segments of 20 pixels or more (LSD) and describes them (LBD). Thread-safe.
+@throws cv::Exception, even for an empty picture, if this library was built without OpenCV's module line_descriptor. */
 Segments findSegments(const Picture& picture);
 
 }  // namespace cv::iib

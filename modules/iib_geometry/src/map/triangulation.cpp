@@ -11,7 +11,7 @@
 namespace cv::iib {
 namespace {
 
-constexpr double MAX_ERROR = 4;    // pixels, of a keypoint from its point
+constexpr double MAX_ERROR = 4;    // pixels between a keypoint and its projected point
 constexpr double MIN_ANGLE = 1.5;  // degrees between the rays of a point
 constexpr int ROUNDS = 5;          // of a point's refinement
 
@@ -20,11 +20,11 @@ double angleOf(const Ray& a, const Ray& b)
     return std::atan2(norm(a.direction.cross(b.direction)), a.direction.dot(b.direction));
 }
 
-/** The point x nearest to rays by angle, with Cauchy's loss of a pixel: the sum of w (1 - d d') (x - c) is 0, with the centre c and
-direction d of each ray (the midpoint method of Hartley and Sturm 1997, reweighted). */
-Vec3d meetingPoint(const Track& track)
+/** The point x with the least Cauchy loss (one pixel) of its angles to the rays: the sum of w (1 - d d') (x - c) is 0,
+with the centre c and direction d of each ray (the midpoint method of Hartley and Sturm 1997, reweighted). */
+Vec3d nearestPoint(const Track& track)
 {
-    const Vec3d origin = track[0].centre;  // which may lie far from the world's
+    const Vec3d origin = track[0].centre;  // keeps precision far from the world's origin
     Vec3d point;
     std::vector<double> weights(track.size(), 1);
     for (int round = 0; round < ROUNDS; round++)
@@ -68,14 +68,14 @@ std::vector<Track> tracksOf(const std::vector<Ray>& rays, std::vector<RayMatch> 
                        (rays[o].point >= 0 && rays[k].point >= 0 && rays[o].point != rays[k].point);
             });
         };
-        if (std::any_of(from.begin(), from.end(), clashes))  // also if they are one already
+        if (std::any_of(from.begin(), from.end(), clashes))  // also if both are one track already
             return;
         for (size_t k : from)
             trackOf[k] = trackOf[a];
         into.insert(into.end(), from.begin(), from.end());
         from.clear();
     };
-    std::map<int, size_t> known;  // rays of points
+    std::map<int, size_t> known;  // first ray of each point
     for (size_t k = 0; k < rays.size(); k++)
         if (rays[k].point >= 0)
             join(known.emplace(rays[k].point, k).first->second, k);
@@ -94,21 +94,21 @@ std::vector<Track> tracksOf(const std::vector<Ray>& rays, std::vector<RayMatch> 
 
 namespace {
 
-/** Moves the keypoints of each track to what the reference shows: one that sees a point already, or that which looks least
-differently from the others. Those that see a point stay. */
+/** Refines the keypoints of each track against a reference: one that sees a point already, else the ray with the
+smallest angles to the others. Keypoints that see a point stay. */
 void refineTracks(std::vector<Track>& tracks, std::vector<MapImage>& images)
 {
     std::map<std::pair<size_t, size_t>, std::vector<std::pair<int, int>>> jobs;  // keypoints by images
     for (Track& track : tracks)
     {
-        const auto strangeness = [&](const Ray& ray) {
+        const auto angleToOthers = [&](const Ray& ray) {
             double sum = 0;
             for (const Ray& other : track)
                 sum += angleOf(ray, other);
             return ray.point >= 0 ? -1 : sum;
         };
         const Ray& reference = *std::min_element(track.begin(), track.end(),
-                [&](const Ray& a, const Ray& b) { return strangeness(a) < strangeness(b); });
+                [&](const Ray& a, const Ray& b) { return angleToOthers(a) < angleToOthers(b); });
         for (const Ray& ray : track)
             if (ray.point < 0 && ray.image != reference.image)
                 jobs[{reference.image, ray.image}].emplace_back(reference.keypoint, ray.keypoint);
@@ -129,7 +129,8 @@ void refineTracks(std::vector<Track>& tracks, std::vector<MapImage>& images)
         }
         refine(prepared.of(list[n].first.first, fixed.picture),
                 prepared.of(list[n].first.second, moved.picture), pairs);
-        for (size_t i = 0; i < pairs.moved.size(); i++)  // each keypoint is of one track
+        for (size_t i = 0; i < pairs.moved.size();
+                i++)  // no other job writes these: a keypoint has one track
             moved.pixels[size_t(list[n].second[i].second)] = pairs.moved[i].pt;
     });
     std::map<size_t, std::vector<Ray>> rays;
@@ -145,11 +146,11 @@ void refineTracks(std::vector<Track>& tracks, std::vector<MapImage>& images)
 
 }  // namespace
 
-bool place(Track& track, Point3d& point)
+bool triangulatePoint(Track& track, Point3d& point)
 {
     for (; track.size() > 1;)
     {
-        point = meetingPoint(track);
+        point = nearestPoint(track);
         const auto worst = std::max_element(track.begin(), track.end(),
                 [&](const Ray& a, const Ray& b) { return a.error(point) < b.error(point); });
         if (worst->error(point) < MAX_ERROR)
@@ -173,11 +174,11 @@ void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<RayMa
                 std::find_if(track.begin(), track.end(), [](const Ray& r) { return r.point >= 0; });
         const size_t number = known == track.end() ? map.points.size() : size_t(known->point);
         if (std::all_of(track.begin(), track.end(), [](const Ray& r) { return r.point >= 0; }))
-            continue;  // nothing new
+            continue;  // no new keypoint
         for (const Ray& ray : track)
             map.images[ray.image].sees[size_t(ray.keypoint)] = -1;
         Point3d point;
-        if (!place(track, point))
+        if (!triangulatePoint(track, point))
             continue;
         map.points.resize(std::max(map.points.size(), number + 1));
         map.points[number] = point;

@@ -7,13 +7,14 @@
 namespace cv::iib {
 namespace {
 
-struct Pair
+//! Two distortion parameters of a model that form a vector in the image.
+struct ParameterPair
 {
     const char* model;
-    size_t x, y;  //!< parameters after the centre: of what lies along x and y, and turns with the image
+    size_t x, y;  //!< counted after the principal point
 };
 
-const Pair PAIRS[] = {{"OPENCV", 3, 2}, {"FULL_OPENCV", 3, 2}, {"THIN_PRISM_FISHEYE", 3, 2},
+const ParameterPair PAIRS[] = {{"OPENCV", 3, 2}, {"FULL_OPENCV", 3, 2}, {"THIN_PRISM_FISHEYE", 3, 2},
         {"THIN_PRISM_FISHEYE", 6, 7}, {"RAD_TAN_THIN_PRISM_FISHEYE", 6, 7},
         {"RAD_TAN_THIN_PRISM_FISHEYE", 8, 10}, {"RAD_TAN_THIN_PRISM_FISHEYE", 9, 11}};
 
@@ -31,9 +32,8 @@ Upright::Upright(const Size& size, int orientation)
     else if (orientation == 8)
         fromStored_ = Matx33d(0, 1, 0, -1, 0, 0, 0, 0, 1);
     else if (orientation != 1)
-        CV_Error(Error::StsBadArg, format("orientation is %d, of an image that is stored mirrored, and no "
-                                          "camera sees one: flip it "
-                                          "first, and give 1, 3, 6 or 8",
+        CV_Error(Error::StsBadArg, format("orientation is %d, of an image stored mirrored, which no camera "
+                                          "sees: flip it first, and give 1, 3, 6 or 8",
                                            orientation));
 }
 
@@ -73,10 +73,10 @@ Camera Upright::camera(const Camera& stored) const
         values[x] = turned[0];
         values[y] = turned[1];
     };
-    for (const Pair& pair : PAIRS)
+    for (const ParameterPair& pair : PAIRS)
         if (stored.model == pair.model && std::max(pair.x, pair.y) + focals + 2 < values.size())
             turn(focals + 2 + pair.x, focals + 2 + pair.y);
-    turn(focals, focals + 1);  // from a corner of the picture, which turns to another one
+    turn(focals, focals + 1);  // the principal point, from the corner that becomes the new origin
     values[focals] += fromStored_(0, 0) + fromStored_(0, 1) < 0 ? upright.size.width : 0;
     values[focals + 1] += fromStored_(1, 0) + fromStored_(1, 1) < 0 ? upright.size.height : 0;
     return upright;

@@ -5,13 +5,13 @@
 
 namespace cv::iib {
 
-//! Images that their files store turned, as EXIF's orientation tells: upright, as maps have them, and back.
+//! Converts between images as their files store them, with EXIF's orientation, and upright images, as maps have them.
 class Upright
 {
 public:
     /** @param size of the image in its file.
     @param orientation 1, 3, 6 or 8.
-    @throws cv::Exception (StsBadArg) for another one: no camera sees a mirrored image. */
+    @throws cv::Exception (StsBadArg) for another orientation: no camera sees a mirrored image. */
     Upright(const Size& size, int orientation);
 
     Mat image(const Mat& stored) const;
@@ -24,7 +24,7 @@ public:
 private:
     int orientation_;
     Size size_;
-    Matx33d fromStored_;  //!< turn about the optical axis
+    Matx33d fromStored_;  //!< rotation about the optical axis
 };
 
 }  // namespace cv::iib

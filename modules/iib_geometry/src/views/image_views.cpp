@@ -7,9 +7,9 @@
 namespace cv::iib {
 namespace {
 
-const int FEW = 270;       // points of a view by which it is judged
-const double MARGIN = .1;  // of an image's size, around the part that the other one shows
-const int SEARCHED = 640;  // pixels of the longer side of an image that is searched
+const int COARSE_POINTS = 270;  // of a view, during the search
+const double MARGIN = .1;       // of an image's size, around the part that the other image shows
+const int COARSE_SIDE = 640;    // pixels: longer side of an image, during the search
 
 Ptr<IIBDescriptorExtractor> extractorOf(int points, bool upright)
 {
@@ -31,7 +31,7 @@ ImageViews::ImageViews(const Mat& image, const Mat& mask, int maxFeatures)
     : image_(image), mask_(mask), maxFeatures_(maxFeatures)
 {
     if (!mask.empty() && (mask.type() != CV_8UC1 || mask.size() != image.size()))
-        CV_Error(Error::StsBadArg, "masks are CV_8UC1 of the image's size");
+        CV_Error(Error::StsBadArg, "a mask must be CV_8UC1 and of its image's size");
 }
 
 bool ImageViews::shows(const Point2d& point) const
@@ -40,7 +40,7 @@ bool ImageViews::shows(const Point2d& point) const
     return Rect(Point(), size()).contains(pixel) && (mask_.empty() || mask_.at<uchar>(pixel));
 }
 
-std::shared_ptr<const SeenView> ImageViews::look(const View& view, float angle, const Mat& mask) const
+std::shared_ptr<const SeenView> ImageViews::extract(const View& view, float angle, const Mat& mask) const
 {
     const std::shared_ptr<SeenView> found = std::make_shared<SeenView>();
     found->fromImage = view.fromImage(size());
@@ -59,7 +59,7 @@ std::shared_ptr<const SeenView> ImageViews::seen(const View& view) const
     const std::lock_guard<std::mutex> lock(mutex_);
     std::shared_ptr<const SeenView>& kept = seen_[view];
     if (!kept)
-        kept = look(view, -1, view.mask(size(), mask_));
+        kept = extract(view, -1, view.mask(size(), mask_));
     return kept;
 }
 
@@ -74,7 +74,7 @@ std::shared_ptr<const SeenView> ImageViews::seen(
     const Mat all = view.mask(size(), mask_);
     if (!all.empty())
         mask &= all;
-    return look(view, angle, mask);
+    return extract(view, angle, mask);
 }
 
 std::shared_ptr<const PreparedImage> ImageViews::prepared(const View& view) const
@@ -87,31 +87,31 @@ std::shared_ptr<const PreparedImage> ImageViews::prepared(const View& view) cons
     return prepared_;
 }
 
-const std::vector<Described>& ImageViews::few(const View& view, const std::vector<float>& angles) const
+const std::vector<Described>& ImageViews::coarse(const View& view, const std::vector<float>& angles) const
 {
     const std::lock_guard<std::mutex> lock(mutex_);
-    std::vector<Described>& found = few_[view];
+    std::vector<Described>& found = coarse_[view];
     if (found.empty())
-        found = describedAt(view, angles);
+        found = describe(view, angles);
     return found;
 }
 
-std::vector<Described> ImageViews::fewOnce(const View& view, const std::vector<float>& angles) const
+std::vector<Described> ImageViews::coarseOnce(const View& view, const std::vector<float>& angles) const
 {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return describedAt(view, angles);
+    return describe(view, angles);
 }
 
-//! Called under the lock.
-std::vector<Described> ImageViews::describedAt(const View& view, const std::vector<float>& angles) const
+//! Requires the lock.
+std::vector<Described> ImageViews::describe(const View& view, const std::vector<float>& angles) const
 {
     if (base_.empty())
     {
-        base_ = searched().pixels(image_);
-        baseMask_ = mask_.empty() ? Mat() : searched().mask(size(), mask_);
+        base_ = coarseView().pixels(image_);
+        baseMask_ = mask_.empty() ? Mat() : coarseView().mask(size(), mask_);
     }
     const Mat pixels = view.pixels(base_);
-    const Ptr<IIBDescriptorExtractor> extractor = extractorOf(FEW, false);
+    const Ptr<IIBDescriptorExtractor> extractor = extractorOf(COARSE_POINTS, false);
     std::vector<KeyPoint> keypoints, all;
     extractor->detect(pixels, keypoints, view.mask(base_.size(), baseMask_));
     for (float angle : angles)
@@ -129,14 +129,14 @@ std::vector<Described> ImageViews::describedAt(const View& view, const std::vect
     return found;
 }
 
-View ImageViews::searched() const
+View ImageViews::coarseView() const
 {
-    return View::reduced(std::min(1., SEARCHED / (double)std::max(image_.rows, image_.cols)));
+    return View::reduced(std::min(1., COARSE_SIDE / (double)std::max(image_.rows, image_.cols)));
 }
 
-Matx33d ImageViews::toFew(const View& view) const
+Matx33d ImageViews::toCoarse(const View& view) const
 {
-    return view.fromImage(searched().sizeOf(size())) * searched().fromImage(size());
+    return view.fromImage(coarseView().sizeOf(size())) * coarseView().fromImage(size());
 }
 
 std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map)

@@ -31,9 +31,8 @@ public:
         if (reason)
             *reason = found ? ""
                             : format("at most %.0f of %d matches agree, which could be random: the images "
-                                     "may not show the "
-                                     "same, or from views that differ too much",
-                                      best.right, best.points1.rows);
+                                     "may not show the same scene, or their views differ too much",
+                                      best.inliers, best.points1.rows);
         if (found)
             writeRows(Mat(best.map), view);
         else
@@ -54,10 +53,10 @@ Ptr<ViewMatcher> ViewMatcher::create(InputArray image, int maxFeatures, double m
     const double mostTilt = 8;
     if (!(maxTilt >= 1 && maxTilt <= mostTilt))
         CV_Error(Error::StsOutOfRange,
-                format("matchViews: maxTilt is %g; it is 1 (no tilted views) to %g", maxTilt, mostTilt));
+                format("matchViews: maxTilt is %g; it must be 1 (no tilted views) to %g", maxTilt, mostTilt));
     if (maxFeatures < 0)
         CV_Error(Error::StsOutOfRange,
-                format("matchViews: maxFeatures is %d; it is a number of keypoints, or 0 for all",
+                format("matchViews: maxFeatures is %d; it must be a number of keypoints, or 0 for all",
                         maxFeatures));
     return makePtr<ViewMatcherImpl>(image.getMat(), mask.getMat(), maxFeatures, maxTilt);
 }

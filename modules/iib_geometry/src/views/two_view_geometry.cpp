@@ -9,7 +9,7 @@
 namespace cv::iib {
 namespace {
 
-const double THRESHOLD = 1.5;  // pixels from the epipolar line, or from where the homography has the point
+const double THRESHOLD = 1.5;  // pixels from the epipolar line, or from the point mapped by the homography
 const double CONFIDENCE = .9999;
 const int MOST_TRIALS = 10000;
 
@@ -30,7 +30,7 @@ TwoViewGeometry::TwoViewGeometry(const Mat& points1, const Mat& points2)
             else
                 findHomography(points1, points2, USAC_MAGSAC, THRESHOLD, marks, MOST_TRIALS, CONFIDENCE);
         }
-        catch (const cv::Exception&)  // degenerate points, for some versions
+        catch (const cv::Exception&)  // some versions of OpenCV throw for degenerate points
         {
             continue;
         }

@@ -7,10 +7,10 @@
 
 namespace cv::iib {
 
-//! Matches that agree with one fundamental matrix or one homography, and whether that can be chance.
+//! The inliers of a fundamental matrix or a homography, whichever has fewer false alarms.
 struct TwoViewGeometry
 {
-    std::vector<uchar> inliers;  //!< a mark for each match; of none if nothing agrees
+    std::vector<uchar> inliers;  //!< 1 or 0 for each match; empty if no geometry was found
     double logFalseAlarms;       //!< as iib::logFalseAlarms
 
     //! @param points1, points2 N x 2, CV_64F, pixels.

@@ -11,15 +11,14 @@ namespace cv::iib {
 namespace {
 
 const int LEAST_SIDE = 16;           // pixels of a view
-const double LEAST_TILT = 1.25;      // below it a view is reduced by one scale
-const double LEAST_SHORTENED = .95;  // a scale above it is 1
-
-const double MOST_ENLARGED = 2;  // factor: what is enlarged more has no points of its own
-const double MOST_TURN = 8 * CV_PI / 180, MOST_SCALE = 1.2;  // between views that match as well as others
+const double LEAST_TILT = 1.25;      // smaller tilts become one scale for both axes
+const double LEAST_SHORTENED = .95;  // larger scales become 1
+const double MOST_ENLARGED = 2;      // factor: further enlargement gives no more points
+const double MOST_TURN = 8 * CV_PI / 180, MOST_SCALE = 1.2;  // between maps whose views match equally well
 
 Mat affine(const Matx33d& map) { return Mat(map.get_minor<2, 3>(0, 0)); }
 
-//! One scale for both axes where they differ little.
+//! The view of a rotation and two scales, with one scale if they differ little.
 View viewOf(double longitude, Vec2d scales)
 {
     for (int axis = 0; axis < 2; axis++)
@@ -45,7 +44,7 @@ Size View::turnedSize(const Size& image) const
     return Size(cvCeil(image.width * c + image.height * s), cvCeil(image.width * s + image.height * c));
 }
 
-//! About the centres of both.
+//! The rotation about the centres of the image and the rotated image.
 Matx33d View::turn(const Size& image) const
 {
     const double c = std::cos(longitude), s = std::sin(longitude);
@@ -55,7 +54,7 @@ Matx33d View::turn(const Size& image) const
             (turned.height - 1) / 2. + s * x - c * y, 0, 0, 1);
 }
 
-//! What is left at the right and below a multiple of a whole factor is left out.
+//! The size shown by a view: for a whole factor, a multiple of it, without the remaining columns and rows.
 Size View::shownSize(const Size& image) const
 {
     const int factor = cvRound(1 / scales[0]);
@@ -87,7 +86,7 @@ Mat View::pixels(const Mat& image) const
 {
     if (isImage() || image.empty() ||
             (image.depth() != CV_8U && image.depth() != CV_16U && image.depth() != CV_32F))
-        return image;  // the extractor says what is wrong
+        return image;  // the extractor reports the error
     Mat turned = image, view;
     if (longitude == 0)
         turned = image(Rect(Point(), shownSize(image.size())));

@@ -5,14 +5,13 @@
 
 namespace cv::iib {
 
-/** An image as a camera farther away or beside it would see it: turned by an angle, then shortened along both axes (ASIFT's
-simulated views; Morel and Yu 2009, section 2). */
+/** A simulated view from farther away or from the side: the image is rotated, then scaled along both axes (ASIFT; Morel
+and Yu 2009, section 2). */
 struct View
 {
-    double longitude =
-            0;  //!< radians by which the image is turned before it is shortened; 0 where both scales are equal
-    Vec2d scales{1,
-            1};  //!< of the turned image's width and height, over 0; over 1 in small images that are enlarged
+    double longitude = 0;  //!< radians by which the image is rotated; 0 if both scales are equal
+    Vec2d scales{
+            1, 1};  //!< of the rotated image's width and height, positive; above 1 to enlarge small images
 
     static View reduced(double scale) { return {0, {scale, scale}}; }
     static View tilted(double tilt, double longitude) { return {longitude, {1 / tilt, 1}}; }
@@ -22,13 +21,13 @@ struct View
 
     Size sizeOf(const Size& image) const;
 
-    //! Affine map from pixels of the image to pixels of the view; centres of pixels are at whole numbers in both.
+    //! Affine map from pixels of the image to pixels of the view; pixel centres have integer coordinates.
     Matx33d fromImage(const Size& image) const;
 
-    //! The image in the view, mirrored at its borders where the view shows more.
+    //! The view's pixels; beyond the image's borders the image is reflected.
     Mat pixels(const Mat& image) const;
 
-    /** Pixels of the view, CV_8UC1, that show the image and are not 0 in its mask; empty where that is all of them.
+    /** Mask of the view, CV_8UC1: pixels that show the image and its mask; empty for all pixels.
     @param mask of the image, or empty. */
     Mat mask(const Size& image, const Mat& mask) const;
 
@@ -38,29 +37,29 @@ private:
     Matx33d turn(const Size& image) const;
 };
 
-//! Views of two images that show the same at one size and in one shape, and the angle that is left.
+//! Views of two images that show a scene at the same scale and shape, up to a rotation.
 struct ViewPair
 {
     View views[2];
     double angle =
-            0;  //!< degrees, clockwise, 0 or more and less than 360, by which the second view is turned against the first
+            0;  //!< degrees in [0, 360) by which the second view is rotated clockwise against the first
 
-    /** The views of two images between which an affine map leads: along each axis the image that has more pixels is shortened.
+    /** The views for an affine map between two images: along each axis, the image with more pixels is reduced.
     @param map from pixels of image 1 to pixels of image 2. */
     static ViewPair of(const Matx33d& map);
 
-    /** The same, reduced to a longest side of `most` pixels, or enlarged up to twice towards `least` pixels: there small images have more
-    points. */
+    //! The pair reduced to a longest side of `most` pixels, or enlarged up to twice towards `least` pixels to get more
+    //! points.
     ViewPair within(int least, int most, const Size& image1, const Size& image2) const;
 };
 
-//! The derivative of a transform at a point, as an affine map with that point where the transform has it.
+//! The affine map that approximates a transform at a point.
 Matx33d affineAt(const Matx33d& transform, const Point2d& point);
 
-//! The similarity nearest to an affine map's derivative, without a shift.
+//! The similarity nearest to an affine map, with its translation.
 Matx33d similarityOf(const Matx33d& map);
 
-//! Whether images that are seen in the views of one map are seen as well in those of another.
+//! Whether the views of two maps are so similar that images match equally well in both.
 bool areAlike(const Matx33d& map, const Matx33d& other);
 
 }  // namespace cv::iib

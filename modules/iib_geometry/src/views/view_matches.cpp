@@ -10,12 +10,11 @@
 namespace cv::iib {
 namespace {
 
-const double DECISIVE = -25;  // logarithm of the number of false alarms below which nothing else is tried
-const int LEAST_CLEAR = 100;  // matches: one wrong match may lead to fewer
-const double SHARE_CLEAR =
-        .6;  // of those that are compared, which neighbours support: decisive without a geometry
-const double SHARE_RIGHT = .8;  // of the matches that agree with a geometry, if few lead to wrong ones
-const int MOST_IMPROVED = 2;    // times
+const double DECISIVE = -25;            // log10 of false alarms below which the search ends
+const int LEAST_CLEAR = 100;            // matches: propagation of one wrong match may give fewer
+const double SHARE_CLEAR = .6;          // of matches with supporting neighbours: decisive without a geometry
+const double SHARE_INLIERS = .8;        // of the matches: with fewer, inliers alone are propagated again
+const int MOST_IMPROVED = 2;            // rounds
 const int SMALL = 480, WORKING = 1024;  // pixels of the longest side of a view
 
 std::vector<Point2d> placesOf(const Mat& points, const std::vector<uchar>& marks)
@@ -57,7 +56,7 @@ Mat allMoved(const Matx33d& by, const Mat& points)
     return result;
 }
 
-//! In pixels of the images.
+//! Converts propagated matches to pixels of the images.
 ViewMatches inImages(const Propagated& propagated, const SeenView& first, const SeenView& second)
 {
     const Matx33d back1 = first.fromImage.inv(), back2 = second.fromImage.inv();
@@ -76,7 +75,7 @@ ViewMatches inImages(const Propagated& propagated, const SeenView& first, const 
     return found;
 }
 
-//! @param areOrdinary of images as they are: then matches that their neighbours support are decisive without a geometry.
+//! @param areOrdinary whether the views are the images themselves: then support by neighbours can be decisive alone.
 ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdinary)
 {
     const std::vector<DMatch> given = matchesOf(first, second);
@@ -92,14 +91,14 @@ ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdin
         {
             found.map = support.map;
             found.logFalseAlarms = -std::numeric_limits<double>::infinity();
-            found.right = support.share() * found.points1.rows;
+            found.inliers = support.share() * found.points1.rows;
             return found;
         }
     }
     TwoViewGeometry geometry = propagated.geometry();
-    if (geometry.logFalseAlarms < Verdict::CERTAIN && geometry.count() < SHARE_RIGHT * found.points1.rows)
+    if (geometry.logFalseAlarms < Verdict::CERTAIN && geometry.count() < SHARE_INLIERS * found.points1.rows)
     {
-        // Where a pattern repeats, wrong matches lead to further ones, but seldom to one geometry.
+        // In repeated patterns wrong matches propagate too, but they seldom agree with one geometry.
         std::vector<DMatch> agreeing;
         for (size_t i = 0; i < given.size(); i++)
             if (geometry.inliers[i])
@@ -125,11 +124,11 @@ ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdin
         return found;
     found.map = map;
     found.logFalseAlarms = geometry.logFalseAlarms;
-    found.right = geometry.count();
+    found.inliers = geometry.count();
     return found;
 }
 
-//! Matches in views between which a map leads.
+//! Matches the images in the views of a map.
 ViewMatches seenAs(const ImageViews& first, const ImageViews& second, const Matx33d& map)
 {
     const ViewPair pair = ViewPair::of(map).within(SMALL, WORKING, first.size(), second.size());
@@ -137,14 +136,14 @@ ViewMatches seenAs(const ImageViews& first, const ImageViews& second, const Matx
             *second.seen(pair.views[1], (float)pair.angle, cornersAround(first.size(), map)), false);
 }
 
-//! Matches again in views of the map that the matches themselves have, as long as that is another one.
+//! Matches again in views of the estimated map, until the map stops changing or inliers are lost.
 void improve(const ImageViews& first, const ImageViews& second, Matx33d map, ViewMatches& best)
 {
     for (int round = 0; round < MOST_IMPROVED && !areAlike(best.map, map); round++)
     {
         map = best.map;
         ViewMatches found = seenAs(first, second, map);
-        if (found.right <= best.right)
+        if (found.inliers <= best.inliers)
             return;
         std::swap(found, best);
     }
@@ -165,7 +164,7 @@ ViewMatches matchAsTheyAre(const ImageViews& first, const ImageViews& second)
 void searchMatches(const ImageViews& first, const ImageViews& second, double maxTilt, ViewMatches& best)
 {
     const int tried = searchViews(first, second, maxTilt, [&](const ViewCandidate& candidate, int) {
-        if (areAlike(candidate.map, Matx33d::eye()))  // which was tried
+        if (areAlike(candidate.map, Matx33d::eye()))  // matched before the search
             return false;
         ViewMatches found = seenAs(first, second, candidate.map);
         if (found.isDecisive())

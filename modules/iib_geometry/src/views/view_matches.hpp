@@ -10,20 +10,20 @@ namespace cv::iib {
 //! Matches of two images in one pair of views.
 struct ViewMatches
 {
-    Mat points1, points2, covariances, similarities;  //!< as matchViews has them
+    Mat points1, points2, covariances, similarities;  //!< as in matchViews
     double logFalseAlarms = std::numeric_limits<double>::infinity();
-    double right = 0;  //!< number of matches that agree
-    Matx33d map = Matx33d::
-            eye();  //!< affine, estimated from those that agree, from pixels of image 1 to pixels of image 2
+    double inliers = 0;  //!< estimated number of inliers
+    Matx33d map =
+            Matx33d::eye();  //!< affine, fitted to the inliers, from pixels of image 1 to pixels of image 2
 
-    bool isDecisive() const;  //!< whether nothing else need be tried
+    bool isDecisive() const;  //!< whether no search is needed
 };
 
-//! Matches of the images themselves or, where these are decisive and the map between the images is another one, of its views.
+//! Matches the images themselves. Decisive matches are improved in the views of their map.
 ViewMatches matchAsTheyAre(const ImageViews& first, const ImageViews& second);
 
-/** Replaces matches by better ones of other views, if there are any. Counts the views that were compared in the number of false alarms.
-@param maxTilt as of matchViews. */
+/** Searches other views for better matches. All compared views count in the number of false alarms.
+@param maxTilt as in matchViews. */
 void searchMatches(const ImageViews& first, const ImageViews& second, double maxTilt, ViewMatches& best);
 
 }  // namespace cv::iib

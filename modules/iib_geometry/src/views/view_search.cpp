@@ -7,17 +7,16 @@
 namespace cv::iib {
 namespace {
 
-// Every multiple of 30 degrees is a second angle less a first one; descriptors still match 15 degrees off.
+// The differences of these angles include every multiple of 30 degrees; descriptors tolerate 15 degrees.
 const std::vector<float> FIRST_ANGLES{-1, 30, 60}, SECOND_ANGLES{-1, 90, 180, 270};
-const int LEVELS = 5;    // of the scale, each the square root of 2 below the one before
-const double BORNE = 2;  // tilt that the descriptor bears
-const double LONGITUDES =
-        72;                   // degrees, over the tilt: between tilted views (Morel and Yu 2009, section 3.2)
-const double FARTHER = .6;    // scale of the other image, to a tilted view
-const double TOLERANCE = .4;  // of displacements, by how far views are from the true one
-const int MUCH = 30;          // matches: support by which a candidate is tried at once
-const int LEAST = 4;          // matches: support by which a candidate is tried at all
-const int MOST_TRIED = 6;     // of such candidates
+const int LEVELS = 5;          // of scale, in steps of the square root of 2
+const double TOLERATED = 2;    // tilt that descriptors tolerate
+const double LONGITUDES = 72;  // degrees times tilt between tilted views (Morel and Yu 2009, section 3.2)
+const double FARTHER = .6;     // scale of the other image, against a tilted view
+const double TOLERANCE = .4;   // relative error of displacements, since views are sampled coarsely
+const int IMMEDIATE = 30;      // matches: support with which a candidate is tried at once
+const int LEAST = 4;           // matches: support with which a candidate may be tried after the search
+const int MOST_TRIED = 6;      // of candidates after the search
 
 std::vector<std::pair<View, View>> scaledViews()
 {
@@ -59,13 +58,13 @@ std::vector<Point2d> placesOf(const std::vector<KeyPoint>& keypoints, const std:
     return places;
 }
 
-//! The best map of two views, of those of all rotations.
+//! The map with the most support over all rotations of two views.
 ViewCandidate compare(const ImageViews& first, const View& view1, const ImageViews& second, const View& view2,
         const HierarchicalMatcher& matcher)
 {
-    const std::vector<Described>&features1 = first.few(view1, FIRST_ANGLES),
-          &features2 = second.few(view2, SECOND_ANGLES);
-    const Matx33d to1 = first.toFew(view1).inv(), to2 = second.toFew(view2).inv();
+    const std::vector<Described>&features1 = first.coarse(view1, FIRST_ANGLES),
+          &features2 = second.coarse(view2, SECOND_ANGLES);
+    const Matx33d to1 = first.toCoarse(view1).inv(), to2 = second.toCoarse(view2).inv();
     ViewCandidate best{Matx33d::eye(), 0};
     for (size_t i = 0; i < features1.size(); i++)
         for (size_t j = 0; j < features2.size(); j++)
@@ -97,7 +96,7 @@ int searchViews(const ImageViews& first, const ImageViews& second, double maxTil
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
     matcher->setCrossCheck(true);
     std::vector<std::pair<View, View>> views = scaledViews();
-    for (double tilt = BORNE; tilt < maxTilt; tilt *= BORNE)
+    for (double tilt = TOLERATED; tilt < maxTilt; tilt *= TOLERATED)
         for (const auto& pair : tiltedViews(tilt))
             views.push_back(pair);
     std::vector<ViewCandidate> others;
@@ -106,9 +105,9 @@ int searchViews(const ImageViews& first, const ImageViews& second, double maxTil
     {
         const ViewCandidate candidate = compare(first, pair.first, second, pair.second, *matcher);
         tried += int(FIRST_ANGLES.size() * SECOND_ANGLES.size());
-        if (candidate.support >= MUCH && isAnswer(candidate, tried))
+        if (candidate.support >= IMMEDIATE && isAnswer(candidate, tried))
             return tried;
-        if (candidate.support >= LEAST && candidate.support < MUCH)
+        if (candidate.support >= LEAST && candidate.support < IMMEDIATE)
             others.push_back(candidate);
     }
     std::stable_sort(others.begin(), others.end());

@@ -7,7 +7,7 @@ namespace opencv_test {
 namespace {
 using namespace cv::iib;
 
-//! The codes with each bit turned over with a probability.
+//! The codes with each bit flipped with a probability.
 cv::Mat noisy(const cv::Mat& codes, double probability, cv::RNG& random)
 {
     cv::Mat result = codes.clone();
@@ -37,8 +37,7 @@ TEST(ImageVoting, finds_the_image_of_noisy_codes_among_many)
     }
 }
 
-// A map a hundred times as large takes as many votes.
-TEST(ImageVoting, looks_at_no_more_codes_of_ten_thousand_images)
+TEST(ImageVoting, visits_as_few_codes_in_a_map_a_hundred_times_as_large)
 {
     cv::RNG random(1);
     std::vector<cv::Mat> images(10000);
@@ -55,7 +54,7 @@ TEST(ImageVoting, looks_at_no_more_codes_of_ten_thousand_images)
     EXPECT_EQ(50, std::max_element(many.ofImages.begin(), many.ofImages.end()) - many.ofImages.begin());
 }
 
-TEST(ImageVoting, images_share_the_vote_of_a_key_and_what_is_frequent_has_none)
+TEST(ImageVoting, images_share_the_vote_of_a_key_and_frequent_keys_have_none)
 {
     const int tables = 16, strongest = 400;
     const cv::Mat code(1, 64, CV_8U, cv::Scalar(7)), other(1, 64, CV_8U, cv::Scalar(255));

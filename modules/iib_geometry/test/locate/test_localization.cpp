@@ -23,7 +23,7 @@ void expectAt(const cv::Affine3d& truth, const Location& location, double metres
 
 typedef WallTest Localization;
 
-TEST_F(Localization, in_another_light)
+TEST_F(Localization, under_changed_illumination)
 {
     const Localizer localizer(folder.path("map"));
     const cv::Mat image = wall.image(TRUTH);
@@ -37,7 +37,7 @@ TEST_F(Localization, in_another_light)
     EXPECT_EQ(CAMERA.parameters, localizer.cameras()[0].parameters);
 }
 
-TEST_F(Localization, of_files_that_store_the_image_turned)
+TEST_F(Localization, of_files_with_a_rotated_image)
 {
     const Localizer localizer(folder.path("map"));
     const cv::Mat image = wall.image(TRUTH);
@@ -48,7 +48,7 @@ TEST_F(Localization, of_files_that_store_the_image_turned)
                 orientation == 3   ? cv::ROTATE_180
                 : orientation == 6 ? cv::ROTATE_90_COUNTERCLOCKWISE
                                    : cv::ROTATE_90_CLOCKWISE);
-        const Camera camera = CAMERA.upright(orientation == 3 ? 3 : 14 - orientation);  // turned back
+        const Camera camera = CAMERA.upright(orientation == 3 ? 3 : 14 - orientation);  // rotated back
         const Location location = localizer.localize(stored, camera, nullptr, orientation);
         ASSERT_TRUE(location.found) << location.reason;
         EXPECT_LT(cv::norm(inverse(location.cameraFromWorld).translation() - TRUTH.translation()), 0.01);
@@ -56,11 +56,11 @@ TEST_F(Localization, of_files_that_store_the_image_turned)
                 camera.project(inCamera(location.points, location.cameraFromWorld));
         for (size_t i = 0; i < seen.size(); i++)
             EXPECT_LT(cv::norm(seen[i] - location.pixels[i]), 2);
-        const Location turned = localizer.localize(stored, camera);  // nobody says that it is
+        const Location turned = localizer.localize(stored, camera);  // without its orientation
         ASSERT_TRUE(turned.found) << turned.reason;
         EXPECT_LT(cv::norm(inverse(turned.cameraFromWorld).translation() - TRUTH.translation()), 0.01);
     }
-    for (int orientation : {2, 4, 5, 7, 9})  // mirrored, and none
+    for (int orientation : {2, 4, 5, 7, 9})  // mirrored, and an invalid one
     {
         EXPECT_NE("", messageOf([&] { localizer.localize(image, CAMERA, nullptr, orientation); }));
         EXPECT_NE("", messageOf([&] { CAMERA.upright(orientation); }));
@@ -103,7 +103,7 @@ TEST_F(Localization, in_a_map_of_rotated_photographs)
     expectAt(TRUTH, localizer.localize(wall.image(TRUTH), CAMERA), .02);
 }
 
-//! A part that looks the same in the mirror has a pose, which is another one than that of the image.
+// A symmetric part of a mirrored image agrees with a wrong pose.
 TEST_F(Localization, mirrored_images_are_refused_where_a_part_is_symmetric)
 {
     const Localizer localizer(folder.path("map"));
@@ -122,7 +122,7 @@ TEST_F(Localization, mirrored_images_are_refused_where_a_part_is_symmetric)
     expectAt(pose, right, .05);
 }
 
-TEST_F(Localization, looks_at_what_a_mask_allows)
+TEST_F(Localization, uses_only_what_a_mask_allows)
 {
     const Localizer localizer(folder.path("map"));
     cv::Mat mask(SIZE, CV_8U, cv::Scalar(1));
@@ -131,7 +131,7 @@ TEST_F(Localization, looks_at_what_a_mask_allows)
     expectAt(TRUTH, location, 0.05);
     for (const cv::Point2d& pixel : location.pixels)
         EXPECT_GE(pixel.x, SIZE.width / 2 - 1);
-    EXPECT_EQ("a mask is CV_8UC1, of its image's size",
+    EXPECT_EQ("a mask must be CV_8UC1 and of its image's size",
             messageOf([&] { localizer.localize(wall.image(TRUTH), CAMERA, nullptr, 1, mask.t()); }));
 }
 
@@ -159,13 +159,13 @@ TEST_F(Localization, with_distorted_cameras)
     }
 }
 
-TEST_F(Localization, covariance_is_that_of_repeated_measurements)
+TEST_F(Localization, covariance_matches_repeated_measurements)
 {
     const Localizer localizer(folder.path("map"));
     const cv::Mat image = wall.image(TRUTH);
     cv::RNG random(5);
     cv::Vec6d squares;
-    cv::Vec6d told;
+    cv::Vec6d reported;
     constexpr int COUNT = 20;
     for (int i = 0; i < COUNT; i++)
     {
@@ -182,17 +182,17 @@ TEST_F(Localization, covariance_is_that_of_repeated_measurements)
             squares[k + 3] += turned[k] * turned[k] / COUNT;
         }
         for (int k = 0; k < 6; k++)
-            told[k] += location.covariance(k, k) / COUNT;
+            reported[k] += location.covariance(k, k) / COUNT;
     }
     for (int k = 0; k < 6; k++)
     {
-        EXPECT_GT(squares[k], 0.1 * told[k]) << k;
-        EXPECT_LT(squares[k], 9 * told[k]) << k;
+        EXPECT_GT(squares[k], 0.1 * reported[k]) << k;
+        EXPECT_LT(squares[k], 9 * reported[k]) << k;
     }
 }
 
-// Alone, the points that keypoints match place these images within .67 mm.
-TEST_F(Localization, looks_for_points_that_no_keypoint_matched)
+// Without guided matches the error is .67 mm.
+TEST_F(Localization, guided_matches_improve_poses)
 {
     const Localizer localizer(folder.path("map"));
     constexpr int COUNT = 12;
@@ -212,7 +212,7 @@ TEST_F(Localization, looks_for_points_that_no_keypoint_matched)
     EXPECT_LT(std::sqrt(squares), 0.00055);
 }
 
-TEST_F(Localization, prepared_images_are_refined_as_images_are)
+TEST_F(Localization, prepared_images_are_refined_like_images)
 {
     const cv::Mat one = wall.image(TRUTH), other = wall.image(poseAt(.12, -.1, .1));
     std::vector<cv::KeyPoint> keypoints[2];
@@ -279,10 +279,10 @@ TEST_F(Localization, a_prior_gates_and_is_not_needed)
     const Location free = localizer.localize(image, CAMERA),
                    gated = localizer.localize(image, CAMERA, &prior);
     expectAt(TRUTH, gated, 0.01);
-    // two images of the map instead of five
+    // A prior compares two images of the map instead of five.
     EXPECT_LT(gated.matches, free.matches);
     const Location recovered = localizer.localize(image, CAMERA, &away);
-    EXPECT_EQ(free.cameraFromWorld.matrix, recovered.cameraFromWorld.matrix) << "looked for everywhere";
+    EXPECT_EQ(free.cameraFromWorld.matrix, recovered.cameraFromWorld.matrix) << "whole map searched";
 }
 
 TEST_F(Localization, an_unknown_place_and_empty_images_get_no_pose)
@@ -297,17 +297,16 @@ TEST_F(Localization, an_unknown_place_and_empty_images_get_no_pose)
     camera.model = "FOV";
     EXPECT_NE("", messageOf([&] { localizer.localize(cv::Mat(SIZE, CV_8U), camera); }));
     for (int type : {CV_16UC1, CV_32FC1, CV_8UC4})
-        EXPECT_EQ("an image is 8-bit, grey or BGR, not " + cv::typeToString(type),
+        EXPECT_EQ("an image must be 8-bit, grey or BGR, not " + cv::typeToString(type),
                 messageOf([&] { localizer.localize(cv::Mat(SIZE, type, cv::Scalar()), CAMERA); }));
 }
 
 TEST_F(Localization, points_are_checked_before_a_map_is_read_or_made)
 {
-    const std::string told =
-            "keypoints that are looked for are 1 or more, or 0 for as many as the map's images have, not -1";
-    EXPECT_EQ(told, messageOf([&] { Localizer(folder.path("map"), -1); }));
-    EXPECT_EQ(told, messageOf([&] { Localizer(folder.path("gone"), -1); }));
-    EXPECT_EQ(told, messageOf([&] { Localizer(folder.path("gone"), images(), -1); }));
+    const std::string message = "points is -1: it must be 0, for as many as the map's images have, or more";
+    EXPECT_EQ(message, messageOf([&] { Localizer(folder.path("map"), -1); }));
+    EXPECT_EQ(message, messageOf([&] { Localizer(folder.path("gone"), -1); }));
+    EXPECT_EQ(message, messageOf([&] { Localizer(folder.path("gone"), images(), -1); }));
 }
 
 TEST_F(Localization, codes_of_another_descriptor_are_refused)
@@ -315,7 +314,7 @@ TEST_F(Localization, codes_of_another_descriptor_are_refused)
     for (MapImage& image : map.images)
         image.codes = image.codes.colRange(0, 64).clone();
     MapFolder(folder.path("map")).write(map);
-    EXPECT_EQ("the map's codes are not those of this version: make it again",
+    EXPECT_EQ("the map's codes are of another version: make the map again",
             messageOf([&] { Localizer(folder.path("map")); }));
 }
 

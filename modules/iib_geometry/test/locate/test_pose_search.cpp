@@ -11,24 +11,24 @@ using namespace cv::iib;
 const Camera VGA = {"PINHOLE", {640, 480}, {500, 500, 320, 240}};
 const Affine3d HERE(Vec3d(.1, -.2, .05), Vec3d(.3, -.1, .2));
 
-//! A map of points without pictures, and matches of an image with it.
-struct Sought
+//! A map of points without pictures, and matches with an image.
+struct PoseProblem
 {
     Map map;
     std::vector<Match> matches;
 
-    //! A match that is off by as much.
+    //! Adds a match whose pixel has an error.
     void add(const Point2d& pixel, double depth, const Point2d& off = Point2d())
     {
         const Matx33d matrix = VGA.matrix();
         const Vec3d ray((pixel.x - matrix(0, 2)) / matrix(0, 0), (pixel.y - matrix(1, 2)) / matrix(1, 1), 1);
-        const int number = int(matches.size()), views = 4;  // of too few matches to refine
+        const int number = int(matches.size()), views = 4;  // with too few matches to refine
         map.images.resize(views);
         map.points.push_back(inverse(HERE) * Point3d(ray * depth));
         matches.push_back({pixel + off, map.points.back(), number, number, 0, number % views, 0});
     }
 
-    //! The same at any depth.
+    //! Adds a match at a random depth.
     void addAnywhere(RNG& random, const Point2d& pixel, const Point2d& off)
     {
         add(pixel, random.uniform(3., 6.), off);
@@ -55,20 +55,21 @@ Point2d anyPixel(RNG& random) { return {random.uniform(0., 640.), random.uniform
 
 Point2d anyError(RNG& random, double pixels) { return {random.gaussian(pixels), random.gaussian(pixels)}; }
 
-// One draw of wrong matches, which may be right ones by chance, took 17 of these 60 for chance themselves.
-TEST(PoseSearch, few_matches_that_all_agree_are_a_pose)
+// With only one shuffle of matches in the significance test, which may leave right ones, 17 of these 60 poses were
+// refused.
+TEST(PoseSearch, few_matches_that_all_agree_give_a_pose)
 {
     RNG random(5);
     for (int trial = 0; trial < 60; trial++)
     {
-        Sought sought;
+        PoseProblem problem;
         for (const Point2d& corner : {Point2d(60, 50), {560, 70}, {90, 400}, {540, 420}, {300, 220}})
         {
             const Point2d place = corner + anyError(random, 20);
             for (const Point2d& beside : {Point2d(-6, -6), {6, -6}, {-6, 6}, {6, 6}})
-                sought.addAnywhere(random, place + beside, anyError(random, .5));
+                problem.addAnywhere(random, place + beside, anyError(random, .5));
         }
-        const Location found = sought.located();
+        const Location found = problem.located();
         EXPECT_TRUE(found.found) << trial << ": " << found.reason;
     }
 }
@@ -76,35 +77,35 @@ TEST(PoseSearch, few_matches_that_all_agree_are_a_pose)
 TEST(PoseSearch, an_image_is_prepared_once_for_a_prior_and_without_one)
 {
     RNG random(5);
-    Sought sought;
+    PoseProblem problem;
     for (int i = 0; i < 40; i++)
-        sought.addAnywhere(random, anyPixel(random), Point2d());
-    LocatedImage found = sought.found();
+        problem.addAnywhere(random, anyPixel(random), Point2d());
+    LocatedImage found = problem.found();
     EXPECT_TRUE(found.location.found) << found.location.reason;
-    found.features.picture = Picture();  // which cannot be prepared
-    EXPECT_NO_THROW(sought.find(found));
+    found.features.picture = Picture();  // cannot be prepared
+    EXPECT_NO_THROW(problem.find(found));
 }
 
-TEST(PoseSearch, matches_in_one_window_are_no_pose)
+TEST(PoseSearch, matches_in_one_window_give_no_pose)
 {
     RNG random(6);
     for (int trial = 0; trial < 10; trial++)
     {
-        Sought sought;
+        PoseProblem problem;
         for (int i = 0; i < 60; i++)
         {
             const bool right = i < 20;
             const Point2d pixel = right ? Point2d(300, 200) + 4 * Point2d(i % 5, i / 5) : anyPixel(random);
-            sought.addAnywhere(random, pixel, right ? Point2d() : anyPixel(random) - pixel);
+            problem.addAnywhere(random, pixel, right ? Point2d() : anyPixel(random) - pixel);
         }
-        const Location found = sought.located();
+        const Location found = problem.located();
         EXPECT_FALSE(found.found);
-        EXPECT_EQ("the matches that agree are no more than chance may give", found.reason);
+        EXPECT_EQ("the matches that agree could be random", found.reason);
         EXPECT_GE(found.inliers, 16) << "which is enough";
     }
 }
 
-//! How many standard deviations a pose is off, squared: six in the mean, if what is told holds.
+//! The squared Mahalanobis length of a pose's error: six in the mean for a correct covariance.
 double squaredError(const Affine3d& pose, const Matx66d& covariance)
 {
     const Vec3d moved = inverse(HERE).translation() - inverse(pose).translation(),
@@ -113,7 +114,7 @@ double squaredError(const Affine3d& pose, const Matx66d& covariance)
     return error.dot(covariance.inv(DECOMP_SVD) * error);
 }
 
-TEST(ClusteredCovariance, foretells_errors_that_neighbours_share)
+TEST(ClusteredCovariance, predicts_errors_that_neighbours_share)
 {
     RNG random(7);
     const int trials = 100, perSide = 4;
@@ -125,18 +126,18 @@ TEST(ClusteredCovariance, foretells_errors_that_neighbours_share)
             Point2d ofCell[perSide * perSide];
             for (Point2d& error : ofCell)
                 error = anyError(random, shared);
-            Sought sought;
+            PoseProblem problem;
             for (int i = 0; i < 240; i++)
             {
                 const Point2d pixel = anyPixel(random);
-                sought.addAnywhere(random, pixel,
+                problem.addAnywhere(random, pixel,
                         ofCell[int(pixel.x / 160) + perSide * int(pixel.y / 120)] + anyError(random, .5));
             }
             Affine3d pose = HERE;
             Matx66d covariance;
-            ASSERT_TRUE(refinePose(sought.matches, Lens(VGA), pose, covariance));
+            ASSERT_TRUE(refinePose(problem.matches, Lens(VGA), pose, covariance));
             unclustered += squaredError(pose, covariance) / trials;
-            ASSERT_TRUE(clusteredCovariance(sought.matches, Lens(VGA), pose, covariance));
+            ASSERT_TRUE(clusteredCovariance(problem.matches, Lens(VGA), pose, covariance));
             squared += squaredError(pose, covariance) / trials;
         }
         EXPECT_GT(squared, 6 * .4) << shared;
@@ -145,13 +146,13 @@ TEST(ClusteredCovariance, foretells_errors_that_neighbours_share)
     }
 }
 
-TEST(ClusteredCovariance, is_none_of_matches_that_do_not_determine_the_pose)
+TEST(ClusteredCovariance, fails_for_a_degenerate_pose)
 {
-    Sought sought;
+    PoseProblem problem;
     for (const Point2d& pixel : {Point2d(100, 100), {500, 300}})
-        sought.add(pixel, 4);
+        problem.add(pixel, 4);
     Matx66d covariance = Matx66d::eye();
-    EXPECT_FALSE(clusteredCovariance(sought.matches, Lens(VGA), HERE, covariance));
+    EXPECT_FALSE(clusteredCovariance(problem.matches, Lens(VGA), HERE, covariance));
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace opencv_test {
 namespace {
 using namespace cv::iib;
 
-const cv::Vec3d GRAVITY(0, 9.81 * 0.8, 9.81 * 0.6);  // no axis of the world
+const cv::Vec3d GRAVITY(0, 9.81 * 0.8, 9.81 * 0.6);  // along no axis of the world
 const cv::Vec3d RATE_BIAS(0.003, -0.002, 0.004), FORCE_BIAS(0.03, -0.02, 0.04);
 
 //! A smooth path of the IMU, as a function of seconds.
@@ -44,7 +44,7 @@ const char* const CONTRADICTS =
         "and units "
         "(radians a second, m/s^2), its clock, imuFromCamera and that the map is in metres";
 
-//! Images, half a second apart or `step`, with poses about a centimetre and a tenth of a degree off, or `times` as much.
+//! Images `step` nanoseconds apart, whose poses have errors of about 1 cm and 0.1 degrees, multiplied by `times`.
 struct Drive
 {
     std::vector<int64> times;
@@ -70,7 +70,7 @@ struct Drive
             image.cameraFromWorld = cv::Affine3d(
                     cv::Affine3d(turned).rotation() * truth.rotation(), truth.translation() + moved)
                                             .inv();
-            for (int i = 0; i < 6; i++)  // points of the map err together, which the covariance leaves out
+            for (int i = 0; i < 6; i++)  // too small by CORRELATED, as of a map with correlated errors
                 image.covariance(i, i) = std::pow((i < 3 ? 0.006 : 0.0015) * off, 2) / 5;
             times.push_back(time);
             images.push_back(image);
@@ -83,7 +83,7 @@ struct Drive
             images[i].found = false;
     }
 
-    //! But for every fourth.
+    //! Keeps every fourth pose.
     void forgetMost()
     {
         for (size_t i = 0; i < images.size(); i += 4)
@@ -119,7 +119,7 @@ struct Drive
         }
     }
 
-    //! Metres; a kilometre without a pose.
+    //! Metres; 1000 without a pose.
     double errorOf(size_t i, const Location& image) const
     {
         const cv::Affine3d imu = (imuFromCamera * image.cameraFromWorld).inv();
@@ -127,7 +127,7 @@ struct Drive
                            : 1000;
     }
 
-    //! Mean over the images from the given one on.
+    //! Mean over the images from `from` on.
     double meanError(const std::vector<Location>& found, size_t from = 0) const
     {
         double sum = 0;
@@ -137,8 +137,9 @@ struct Drive
     }
 };
 
-// Each block is told to its lowest order in the time: rows are divided by it, and what is left out is a thousandth.
-TEST(Smoothing, derivatives_are_those_of_finite_differences)
+// Each block is accurate to its lowest order in dt. Rows are divided by that order; higher orders are a thousandth of
+// it.
+TEST(Smoothing, derivatives_match_finite_differences)
 {
     typedef ImuState S;
     S::Errors begin;
@@ -148,14 +149,14 @@ TEST(Smoothing, derivatives_are_those_of_finite_differences)
     const double dt = 1e-3, times[] = {dt, dt * dt, dt, 1, 1, 1};
     const auto movedBy = [&](const S::Errors& errors, S::Matrix& change) {
         S at = plus(state, errors);
-        move(at, cv::Vec3d(1, -.5, .7), cv::Vec3d(3, -4, 8), dt, change);
+        advance(at, cv::Vec3d(1, -.5, .7), cv::Vec3d(3, -4, 8), dt, change);
         return at;
     };
     S::Matrix change, unused;
     const S after = movedBy(S::Errors(), change);
-    cv::Mat_<double> told = cv::Mat_<double>(cv::Mat(change));
+    cv::Mat_<double> analytic = cv::Mat_<double>(cv::Mat(change));
     for (int i = 0; i < S::SIZE; i++)
-        told.row(i) /= times[i / 3];
+        analytic.row(i) /= times[i / 3];
     const auto errorsAt = [&](const Numbers& step) {
         const S::Errors errors = minus(movedBy(S::Errors(step.data()), unused), after);
         Numbers scaled;
@@ -163,20 +164,20 @@ TEST(Smoothing, derivatives_are_those_of_finite_differences)
             scaled.push_back(errors[i] / times[i / 3]);
         return scaled;
     };
-    expectDerivatives(told, errorsAt, .01, .05);  // Affine3d::rvec takes turns below 1e-5 for none
+    expectDerivatives(analytic, errorsAt, .01, .05);  // Affine3d::rvec is zero for rotations below 1e-5
 }
 
-// The covariance of a place and a turn without one between them has in its corner how the turn moves the other place.
-TEST(Smoothing, the_lever_of_a_camera_on_its_imu_is_that_of_finite_differences)
+// For an identity covariance the corner of the result is the derivative of the point by the rotation.
+TEST(Smoothing, the_lever_arm_matches_finite_differences)
 {
     const cv::Affine3d body(cv::Vec3d(.3, -.2, .5), cv::Vec3d(1, 2, 3));
     const cv::Vec3d lever(.4, -.3, .2);
-    const cv::Mat carriedOne(carried(cv::Matx66d::eye(), body.rotation() * lever));
+    const cv::Mat atLever(covarianceAt(cv::Matx66d::eye(), body.rotation() * lever));
     const auto placeAt = [&](const Numbers& turn) {
         const cv::Vec3d at = cv::Affine3d(cv::Vec3d(turn.data())).rotation() * body.rotation() * lever;
         return Numbers{at[0], at[1], at[2]};
     };
-    expectDerivatives(cv::Mat_<double>(carriedOne(cv::Rect(3, 0, 3, 3))), placeAt, 1e-6);
+    expectDerivatives(cv::Mat_<double>(atLever(cv::Rect(3, 0, 3, 3))), placeAt, 1e-6);
 }
 
 TEST(Smoothing, images_without_a_pose_get_one_and_others_a_better_one)
@@ -216,7 +217,7 @@ TEST(Smoothing, without_readings_the_images_poses_stay)
         EXPECT_NEAR(drive.errorOf(i, drive.images[i]), drive.errorOf(i, found[i]), 1e-12);
 }
 
-TEST(Smoothing, the_camera_is_elsewhere_on_the_imu)
+TEST(Smoothing, the_camera_is_away_from_the_imu)
 {
     Drive drive(14, 500000000, 1, cv::Affine3d(cv::Vec3d(1.2, -1.1, 1.3), cv::Vec3d(0.3, -0.2, 0.5)));
     drive.forgetMost();
@@ -225,7 +226,7 @@ TEST(Smoothing, the_camera_is_elsewhere_on_the_imu)
     drive.expectUnchanged(readingsUntil(14), CONTRADICTS);
 }
 
-TEST(Smoothing, a_wrong_pose_counts_little)
+TEST(Smoothing, a_wrong_pose_has_little_weight)
 {
     Drive drive(14);
     drive.moveWrongly(12);
@@ -235,7 +236,7 @@ TEST(Smoothing, a_wrong_pose_counts_little)
 
 TEST(Smoothing, readings_that_contradict_the_images_change_nothing)
 {
-    // The axes of the IMU as a matrix, what units multiply its rates and forces by, and its clock's delay.
+    // The IMU's axes as a matrix, the factors of its units for rates and forces, and the delay of its clock.
     struct Mistake
     {
         const char* name;
@@ -269,8 +270,8 @@ TEST(Smoothing, readings_that_contradict_the_images_change_nothing)
     }
 }
 
-// The images are five times as uncertain, as well as they are told: each reading alone seems likely.
-TEST(Smoothing, readings_that_surprise_a_little_but_always_change_nothing)
+// Images and their covariances are so uncertain that each innovation alone is plausible.
+TEST(Smoothing, small_contradictions_in_all_images_change_nothing)
 {
     Drive drive(10, 250000000, 5);
     for (Location& image : drive.images)
@@ -281,11 +282,11 @@ TEST(Smoothing, readings_that_surprise_a_little_but_always_change_nothing)
     late.erase(late.begin() + 2000, late.end());
     drive.smoothed(readings);
     drive.expectUnchanged(late, CONTRADICTS);
-    drive.imuFromCamera = cv::Affine3d(cv::Vec3d(.42, .31, 0));  // turned by 30 degrees
+    drive.imuFromCamera = cv::Affine3d(cv::Vec3d(.42, .31, 0));  // rotated by 30 degrees
     drive.expectUnchanged(readings, CONTRADICTS);
 }
 
-TEST(Smoothing, what_is_told_of_images_without_a_pose_holds)
+TEST(Smoothing, covariances_of_images_without_a_pose_hold)
 {
     int inside = 0, all = 0;
     double sum = 0;
@@ -312,11 +313,11 @@ TEST(Smoothing, what_is_told_of_images_without_a_pose_holds)
         EXPECT_EQ("", smoothPoses(drive.times, found, readings)) << "smoothed again";
     }
     EXPECT_GT(inside, .9 * all);
-    EXPECT_GT(sum, .2 * all) << "nor are they told to be less certain than they are";
+    EXPECT_GT(sum, .2 * all) << "covariances are not much too large";
 }
 
-// What a camera on the IMU tells does not depend on where on it the camera is.
-TEST(Smoothing, covariances_are_carried_from_the_camera_to_the_imu_and_back)
+// The result must not depend on where the camera is mounted on the IMU.
+TEST(Smoothing, covariances_are_converted_between_camera_and_imu)
 {
     const cv::Affine3d imuFromCamera(cv::Vec3d(.4, -.2, .3), cv::Vec3d(2, -1, 3));
     const auto lever = [&](const cv::Affine3d& imu) { return imu.rotation() * imuFromCamera.translation(); };
@@ -328,22 +329,22 @@ TEST(Smoothing, covariances_are_carried_from_the_camera_to_the_imu_and_back)
     {
         const cv::Affine3d imu = image.cameraFromWorld.inv();
         image.cameraFromWorld = (imu * imuFromCamera).inv();
-        image.covariance = carried(image.covariance, lever(imu));
+        image.covariance = covarianceAt(image.covariance, lever(imu));
     }
     const std::vector<Location> found = at.smoothed(readingsUntil(14)),
                                 moved = beside.smoothed(readingsUntil(14));
     for (size_t i = 0; i < found.size(); i++)
         if (!at.images[i].found)
         {
-            const size_t last = i / 4 * 4;  // whose errors the images have in common
-            const cv::Matx66d expected =
-                    beside.images[last].covariance + carried(found[i].covariance - at.images[last].covariance,
-                                                             lever(found[i].cameraFromWorld.inv()));
+            const size_t last = i / 4 * 4;  // the last image with a pose
+            const cv::Matx66d expected = beside.images[last].covariance +
+                                         covarianceAt(found[i].covariance - at.images[last].covariance,
+                                                 lever(found[i].cameraFromWorld.inv()));
             EXPECT_LT(cv::norm(expected, moved[i].covariance), 1e-6 * cv::norm(expected)) << i;
         }
 }
 
-TEST(Smoothing, covariances_that_are_none_change_nothing)
+TEST(Smoothing, invalid_covariances_change_nothing)
 {
     for (const double value : {0., double(NAN), -1., HUGE_VAL})
     {
@@ -351,13 +352,13 @@ TEST(Smoothing, covariances_that_are_none_change_nothing)
         drive.forget(2, 3);
         drive.images[3].covariance = cv::Matx66d::eye() * value;
         drive.expectUnchanged(readingsUntil(4),
-                "image 3 has a pose or a covariance that is none (not finite, or zero), so that it cannot "
+                "image 3 has an invalid pose or covariance (not finite, or zero), so that it cannot "
                 "be weighed against the "
                 "readings: all poses stay as they are");
     }
 }
 
-TEST(Smoothing, readings_that_go_wrong_count_until_then)
+TEST(Smoothing, readings_that_go_wrong_are_used_until_then)
 {
     std::vector<ImuReading> readings = readingsUntil(20);
     for (ImuReading& reading : readings)
@@ -394,19 +395,19 @@ TEST(Smoothing, many_images_a_second_and_a_wrong_one_at_the_start)
     EXPECT_LT(drive.meanError(found, 5), .6 * drive.meanError(drive.images, 5));
 }
 
-TEST(Smoothing, refuses_what_has_no_order)
+TEST(Smoothing, refuses_unordered_times)
 {
     Drive drive(2);
     std::vector<ImuReading> readings = readingsUntil(2);
     const auto error = [&] { return messageOf([&] { drive.smoothed(readings); }); };
-    const std::string rise = ": times are nanoseconds, of at most 19 digits, and rise";
+    const std::string rise = ": times must be nanoseconds, of at most 19 digits, and rise";
     readings[3].force[1] = NAN;
     EXPECT_EQ("a reading of the IMU is not finite", error());
     readings = readingsUntil(2);
     for (const double turn : {double(NAN), 2.})
     {
         drive.imuFromCamera = cv::Affine3d(cv::Matx33d::eye() * turn, cv::Vec3d());
-        EXPECT_EQ("imuFromCamera is not a turn and a shift, or not finite", error());
+        EXPECT_EQ("imuFromCamera must be a finite rotation and translation", error());
     }
     drive.imuFromCamera = cv::Affine3d::Identity();
     readings[3] = readings[2];

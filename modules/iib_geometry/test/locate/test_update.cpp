@@ -13,7 +13,7 @@ class Update : public WallTest
 protected:
     Update() : name(folder.path("map")), truth(poseAt(0.1, -0.1, 0.1)) {}
 
-    //! The wall in a light of its own: shadows that the map does not know.
+    //! The wall under changed illumination: with shadows that the map does not know.
     cv::Mat relit(const cv::Affine3d& pose, int seed) const
     {
         const cv::Mat image = wall.image(pose), other = Wall(uint64(seed)).image(pose);
@@ -34,7 +34,7 @@ protected:
     const cv::Affine3d truth;
 };
 
-TEST_F(Update, an_unknown_light_is_learnt)
+TEST_F(Update, unknown_illumination_is_added)
 {
     std::vector<cv::Affine3d> poses;
     for (int i = 0; i < 4; i++)
@@ -47,7 +47,7 @@ TEST_F(Update, an_unknown_light_is_learnt)
         EXPECT_TRUE(update.add("dusk/" + std::to_string(i) + ".png", relit(poses[i], 9), CAMERA).found);
     EXPECT_TRUE(update.add("dusk/0 again.png", relit(poses[0], 9), CAMERA).found);
     EXPECT_FALSE(update.add("elsewhere", Wall(5).image(truth), CAMERA).found);
-    EXPECT_EQ("an image of the name 'elsewhere' is a part of the update already",
+    EXPECT_EQ("an image named 'elsewhere' is already a part of the update",
             messageOf([&] { update.add("elsewhere", Wall(5).image(truth), CAMERA); }));
     const MapUpdate::Counts counts = update.commit();
     EXPECT_EQ(5, counts.localized);
@@ -62,7 +62,7 @@ TEST_F(Update, an_unknown_light_is_learnt)
     ASSERT_TRUE(location.found);
     EXPECT_GT(location.inliers, before * 5 / 4);
     EXPECT_LT(cv::norm(inverse(location.cameraFromWorld).translation() - truth.translation()), 0.01);
-    std::vector<double> away;  // of the added images' points from the wall; a pixel of one is 20 cm
+    std::vector<double> away;  // distances of the added images' points from the wall; a pixel is 20 cm
     for (size_t i = 6; i < learnt.images.size(); i++)
         for (int number : learnt.images[i].sees)
         {
@@ -73,7 +73,7 @@ TEST_F(Update, an_unknown_light_is_learnt)
     EXPECT_LT(median(away), .06);
 }
 
-TEST_F(Update, a_known_light_adds_nothing)
+TEST_F(Update, known_illumination_adds_nothing)
 {
     MapUpdate update(name);
     EXPECT_TRUE(update.add("again", wall.image(poseAt(0.1, 0.05, 0.09)), CAMERA).found);
@@ -83,11 +83,11 @@ TEST_F(Update, a_known_light_adds_nothing)
     EXPECT_EQ(6u, readMap(name).images.size());
 }
 
-TEST_F(Update, what_eight_updates_do_not_find_is_dropped)
+TEST_F(Update, codes_that_eight_updates_miss_are_dropped)
 {
     const size_t before = codes();
     const cv::Mat half = wall.image(truth);
-    half.colRange(0, SIZE.width / 2).setTo(90);  // built over
+    half.colRange(0, SIZE.width / 2).setTo(90);  // half of the scene changed
     int dropped = 0;
     for (int i = 0; i < 8; i++)
     {
@@ -101,10 +101,10 @@ TEST_F(Update, what_eight_updates_do_not_find_is_dropped)
     EXPECT_TRUE(Localizer(name).localize(half, CAMERA).found);
 }
 
-TEST_F(Update, keeps_eight_lights_of_a_place_and_the_models_own_images)
+TEST_F(Update, keeps_eight_added_images_of_a_place_and_the_models_own)
 {
-    map.images[0].name = "updates/1/light";  // as the first update would call its image
-    cv::randu(map.images[3].codes, 0, 256);  // near all of them, and of no help to any
+    map.images[0].name = "updates/1/light";  // the name that the first update would use
+    cv::randu(map.images[3].codes, 0, 256);  // near all images, but never matched
     MapFolder(name).write(map);
     for (int i = 0; i < 10; i++)
     {
@@ -129,7 +129,7 @@ TEST_F(Update, keeps_eight_lights_of_a_place_and_the_models_own_images)
     EXPECT_GE(added, 6u);
 }
 
-TEST_F(Update, what_failed_may_be_tried_again)
+TEST_F(Update, failed_calls_may_be_repeated)
 {
     MapUpdate update(name);
     EXPECT_EQ("the image has 64 x 48 pixels and its camera 320 x 240",

@@ -3,7 +3,7 @@
 #include "map/lines.hpp"
 #include "../wall.hpp"
 
-// The same file as in a build without OpenCV's module line_descriptor.
+// The source as compiled without OpenCV's module line_descriptor.
 #undef IIB_LINE_DESCRIPTOR
 namespace without_line_descriptor {
 namespace cv {
@@ -31,7 +31,7 @@ double distance(const cv::Point3d& point, const MapLine& line)
     return cv::norm((point - line.begin).cross(along)) / cv::norm(along);
 }
 
-//! Lines before four cameras along a wall, which see their ends .2 pixels off, and a bit of each code wrong.
+//! Lines seen by four cameras along a wall, with noise of .2 pixels and one wrong bit in each code.
 class Lines : public testing::Test
 {
 protected:
@@ -94,7 +94,7 @@ protected:
     cv::Mat codes;
 };
 
-TEST_F(Lines, are_where_they_are)
+TEST_F(Lines, are_triangulated)
 {
     add(.15);
     EXPECT_GE(map.lines.size(), 36u);
@@ -116,7 +116,7 @@ TEST_F(Lines, are_where_they_are)
     EXPECT_GE(sights, 3 * map.lines.size()) << "one line where several images see it";
 }
 
-TEST_F(Lines, along_the_path_tell_no_depth)
+TEST_F(Lines, along_the_path_have_no_depth)
 {
     truth.resize(2);
     truth[0] = {{-.5, .4, 3.9}, {.5, .4, 4.1}};
@@ -126,12 +126,12 @@ TEST_F(Lines, along_the_path_tell_no_depth)
     EXPECT_LT(distance(map.lines[0].begin, truth[1]), .06);
 }
 
-TEST_F(Lines, make_poses_of_few_points_better)
+TEST_F(Lines, improve_poses_of_few_points)
 {
     add(.15);
     double errors[2] = {0, 0};
     const Lens lens(CAMERA);
-    const Frame frame({Match{{}, {0, 0, 0}}, Match{{}, {0, 0, 1}}, Match{{}, {0, 0, -1}}});  // the world's
+    const Frame frame({Match{{}, {0, 0, 0}}, Match{{}, {0, 0, 1}}, Match{{}, {0, 0, -1}}});  // identity
     for (int trial = 0; trial < 20; trial++)
     {
         const double z = random.uniform(-.1, .1), y = random.uniform(-.1, .1), x = random.uniform(-.5, .5);
@@ -159,13 +159,13 @@ TEST_F(Lines, make_poses_of_few_points_better)
     EXPECT_LT(errors[1], .5 * errors[0]);
 }
 
-TEST_F(Lines, and_segments_match_where_they_overlap)
+TEST_F(Lines, match_segments_that_overlap)
 {
     const Lens lens(CAMERA);
     const auto ends = [&](const MapLine& line, const Segment& segment) {
         return matchesOf(line, segment, lens, cv::Affine3d(), 2);
     };
-    const MapLine line = {{.5, .5, -2}, {.5, .5, 6}};  // from behind the camera
+    const MapLine line = {{.5, .5, -2}, {.5, .5, 6}};  // begins behind the camera
     const cv::Point2d middle(160, 120), off(3, -3), last = CAMERA.project({line.end})[0];
     const Segment segment = {middle + 5 * (last - middle), last};
     const std::vector<Match> both = ends(line, segment);
@@ -189,12 +189,13 @@ TEST_F(Lines, and_segments_match_where_they_overlap)
 
 typedef WallTest LinesOfMaps;
 
-TEST_F(LinesOfMaps, that_are_not_there_are_told)
+TEST_F(LinesOfMaps, that_are_missing_are_reported)
 {
-    const std::string told = messageOf([] { without_line_descriptor::cv::iib::findSegments(Picture()); });
+    const std::string message = messageOf([] { without_line_descriptor::cv::iib::findSegments(Picture()); });
     EXPECT_NE(std::string::npos,
-            told.find("install opencv_contrib (on Debian and Ubuntu: libopencv-contrib-dev)"));
-    EXPECT_EQ(missing().empty() ? "the map has no lines: make it with lines, or look for none" : told,
+            message.find("install opencv_contrib (on Debian and Ubuntu: libopencv-contrib-dev)"));
+    EXPECT_EQ(missing().empty() ? "the map has no lines: make it with lines, or localize without lines"
+                                : message,
             messageOf([&] { Localizer(folder.path("map"), 1000, true); }));
 }
 
@@ -203,7 +204,7 @@ TEST_F(LinesOfMaps, are_on_the_wall_and_refine_poses)
     if (!missing().empty())
         throw SkipTestException("OpenCV's module line_descriptor is not installed");
     const Wall posters(3, 40);
-    MapOptions options(100);  // few, so that lines count
+    MapOptions options(100);  // few points, so that lines have an effect
     options.lines = true;
     const std::string made = folder.path("lines");
     write(model(1, 40));
@@ -229,7 +230,7 @@ TEST_F(LinesOfMaps, are_on_the_wall_and_refine_poses)
         EXPECT_LT(cv::norm(inverse(after.cameraFromWorld).translation() - truth.translation()), .01);
         EXPECT_LT(after.covariance(0, 0), .98 * before.covariance(0, 0));
     }
-    MapUpdate update(made);  // keeps them
+    MapUpdate update(made);  // keeps the lines
     update.add("a", posters.image(poseAt(0, -.1, 0)) * .3, CAMERA);
     update.commit();
     EXPECT_EQ(lined.lines.size(), readMap(made).lines.size());

@@ -105,7 +105,7 @@ TEST_F(SmallMap, read_as_written)
     EXPECT_EQ(1, textOf(name + "/map.iib")[8]) << "without lines it is one that earlier programs read";
 }
 
-// The shorter side of a reduced picture was rounded: it tells no scale.
+// The shorter side of a reduced picture was rounded, so the scale must come from the longer side.
 TEST_F(SmallMap, pictures_of_portraits_keep_their_scale)
 {
     Map map = smallMap();
@@ -122,7 +122,7 @@ TEST_F(SmallMap, every_altered_byte_and_every_length_is_noticed)
     write(smallMap());
     const std::string whole = textOf(name + "/map.iib"),
                       begin = name + "/map.iib cannot be read as a map of opencv_iib: ";
-    // In place: a file that is written anew waits for the disk.
+    // In place, since rewriting the file would wait for the disk.
     std::fstream file(name + "/map.iib", std::ios::in | std::ios::out | std::ios::binary);
     for (size_t i = 0; i < whole.size(); i++)
     {
@@ -140,7 +140,7 @@ TEST_F(SmallMap, every_altered_byte_and_every_length_is_noticed)
     }
 }
 
-TEST_F(SmallMap, what_contradicts_itself_though_its_sum_is_right)
+TEST_F(SmallMap, contradictions_with_a_right_checksum_are_noticed)
 {
     write(smallMap());
     const auto errorOf = [&](const auto& change) {
@@ -157,10 +157,10 @@ TEST_F(SmallMap, what_contradicts_itself_though_its_sum_is_right)
             image.codes = image.codes.colRange(0, 0).clone();
     }));
     EXPECT_EQ("two images have one name", errorOf([](Map& m) { m.images[1].name = m.images[0].name; }));
-    EXPECT_EQ("a keypoint sees nothing", errorOf([](Map& m) { m.images[2].sees[0] = -1; }));
+    EXPECT_EQ("a keypoint is invalid", errorOf([](Map& m) { m.images[2].sees[0] = -1; }));
     EXPECT_EQ("an image has no camera or no pose",
             errorOf([](Map& m) { m.images[2].cameraFromWorld.matrix(0, 0) = 2; }));
-    EXPECT_EQ("an image sees a line that is not there", errorOf([](Map& m) { m.images[1].lines[0] = 2; }));
+    EXPECT_EQ("an image refers to a missing line", errorOf([](Map& m) { m.images[1].lines[0] = 2; }));
     EXPECT_EQ("it has a NaN or infinite number", errorOf([](Map& m) { m.points[1].x = std::nan(""); }));
 
     write(smallMap());
@@ -174,16 +174,16 @@ TEST_F(SmallMap, what_contradicts_itself_though_its_sum_is_right)
     EXPECT_NE(std::string::npos, error().find("an image has no camera or no pose")) << error();
 }
 
-TEST_F(SmallMap, folders_that_are_no_maps)
+TEST_F(SmallMap, other_folders_are_refused)
 {
     EXPECT_EQ(name + " is no map: it has no map.iib", error());
     folder.makeFolder("map");
     folder.write("map/map.json", "{}");
     EXPECT_EQ(name + " is a map of an earlier version: make it again, in another folder", error());
-    for (const char* mine : {"map.json", "codes.npy", "frames.bin"})  // which no map of this version has
+    for (const char* mine : {"map.json", "codes.npy", "frames.bin"})  // not files of this version
     {
         folder.write("map/" + std::string(mine), "precious");
-        EXPECT_EQ(name + " holds " + mine + ", which is of no earlier run: choose another folder",
+        EXPECT_EQ(name + " holds " + mine + ", which no earlier run wrote: choose another folder",
                 messageOf([&] { write(smallMap()); }));
         std::filesystem::remove(name + "/" + mine);
     }
@@ -196,10 +196,10 @@ TEST_F(SmallMap, folders_that_are_no_maps)
     EXPECT_TRUE(cv::utils::fs::exists(name + "/points3D.bin"));
     const std::string before = textOf(name + "/map.iib");
     folder.write("map/thesis.tex", "precious");
-    EXPECT_EQ(name + " holds thesis.tex, which is of no earlier run: choose another folder",
+    EXPECT_EQ(name + " holds thesis.tex, which no earlier run wrote: choose another folder",
             messageOf([&] { write(smallMap()); }));
     std::filesystem::remove(name + "/thesis.tex");
-    folder.write("map/points.npy", "precious");  // though one of an earlier version had such a file
+    folder.write("map/points.npy", "precious");  // a file of earlier versions
     EXPECT_NE(std::string::npos, messageOf([&] { write(smallMap()); }).find("holds points.npy"));
     std::filesystem::remove(name + "/points.npy");
     folder.write("map/map.iib.notes.tmp", "precious");
@@ -207,7 +207,7 @@ TEST_F(SmallMap, folders_that_are_no_maps)
     std::filesystem::remove(name + "/map.iib.notes.tmp");
     folder.makeFolder("sparse");
     folder.write("sparse/cameras.bin", "precious");
-    EXPECT_EQ(folder.path("sparse") + " holds cameras.bin, which is of no earlier run: choose another folder",
+    EXPECT_EQ(folder.path("sparse") + " holds cameras.bin, which no earlier run wrote: choose another folder",
             messageOf([&] { MapFolder other(folder.path("sparse")); }));
     folder.write("file", "precious");
     EXPECT_NE("", messageOf([&] { MapFolder other(folder.path("file")); }));
@@ -215,7 +215,7 @@ TEST_F(SmallMap, folders_that_are_no_maps)
     EXPECT_EQ(before, textOf(name + "/map.iib"));
 }
 
-TEST_F(SmallMap, one_process_writes_at_a_time_and_what_comes_meanwhile_stays)
+TEST_F(SmallMap, one_process_writes_at_a_time_and_new_files_stay)
 {
     {
         const MapFolder made(name);
@@ -250,7 +250,7 @@ TEST_F(SmallMap, links_are_followed)
     EXPECT_NE("", messageOf([&] { MapFolder other(folder.path("circle")); }));
 }
 
-TEST_F(SmallMap, a_model_that_nothing_would_read_is_not_written)
+TEST_F(SmallMap, an_unreadable_model_is_not_written)
 {
     folder.makeFolder("map");
     const auto errorOf = [&](const auto& change) {
@@ -264,10 +264,10 @@ TEST_F(SmallMap, a_model_that_nothing_would_read_is_not_written)
     EXPECT_EQ("", errorOf([](Images&, Points&) {}));
     EXPECT_EQ(2u, readModel(name).size());
     const std::string before = textOf(name + "/images.bin");
-    EXPECT_EQ("a keypoint of image a b/0.png sees point 2, and there are 2",
+    EXPECT_EQ("a keypoint of image a b/0.png sees point 2 of 2 points",
             errorOf([](Images&, Points& p) { p.resize(2); }));
-    EXPECT_EQ("a model has one image or more, not none", errorOf([](Images& i, Points&) { i.clear(); }));
-    EXPECT_EQ("image a b/0.png is there twice: names are distinct",
+    EXPECT_EQ("a model needs at least one image", errorOf([](Images& i, Points&) { i.clear(); }));
+    EXPECT_EQ("image a b/0.png is there twice: names must be distinct",
             errorOf([](Images& i, Points&) { i[1].name = i[0].name; }));
     EXPECT_EQ("an image has no name: give it one", errorOf([](Images& i, Points&) { i[1].name.clear(); }));
     EXPECT_EQ("the name of an image, 'a...', has a zero byte, which ends names in COLMAP's files",
@@ -281,20 +281,20 @@ TEST_F(SmallMap, a_model_that_nothing_would_read_is_not_written)
                 errorOf([&](Images& i, Points&) {
                     i[0].cameraFromWorld.rotation(change * i[0].cameraFromWorld.rotation());
                 }));
-    EXPECT_EQ("image a b/0.png has a camera of 70000 x 480 pixels: a side has 65535 at most",
+    EXPECT_EQ("image a b/0.png has a camera of 70000 x 480 pixels: at most 65535 a side",
             errorOf([](Images& i, Points&) {
                 i[0].camera = {"PINHOLE", {70000, 480}, {500, 500, 320, 240}};
             }));
     EXPECT_EQ("image a b/0.png has a keypoint that is not finite",
             errorOf([](Images& i, Points&) { i[0].pixels[0].x = HUGE_VAL; }));
-    EXPECT_EQ("image a b/0.png has 2 keypoints, and tells of 3 what they see",
+    EXPECT_EQ("image a b/0.png has 2 keypoints, but 3 indices of their points",
             errorOf([](Images& i, Points&) { i[0].sees.push_back(0); }));
     EXPECT_EQ(
             "a point of the model is not finite", errorOf([](Images&, Points& p) { p[0].z = std::nan(""); }));
     EXPECT_EQ(before, textOf(name + "/images.bin"));
 }
 
-TEST_F(SmallMap, of_a_models_files_all_are_replaced_or_none)
+TEST_F(SmallMap, all_files_of_a_model_are_replaced_or_none)
 {
     folder.makeFolder("map");
     const Map map = smallMap();
@@ -311,7 +311,7 @@ TEST_F(SmallMap, of_a_models_files_all_are_replaced_or_none)
             std::distance(std::filesystem::directory_iterator(name), std::filesystem::directory_iterator()));
 }
 
-//! Numbers of other languages, whichever the machine has.
+//! A locale with a decimal comma and grouped digits, on every machine.
 struct CommaForPoint : std::numpunct<char>
 {
     char do_decimal_point() const override { return ','; }
@@ -319,7 +319,7 @@ struct CommaForPoint : std::numpunct<char>
     std::string do_grouping() const override { return "\3"; }
 };
 
-TEST_F(SmallMap, text_models_have_points_in_every_language)
+TEST_F(SmallMap, text_models_do_not_depend_on_the_locale)
 {
     folder.makeFolder("map");
     folder.write("map/cameras.txt", "1 PINHOLE 64 48 50.5 50.25 32 24\n");
@@ -336,7 +336,7 @@ TEST_F(SmallMap, text_models_have_points_in_every_language)
 
 TEST_F(SmallMap, names_in_any_language)
 {
-    const std::string other = name + " \xc3\xa9\xe6\xbc\xa2\xd0\xb6";  // of no code page of Windows
+    const std::string other = name + " \xc3\xa9\xe6\xbc\xa2\xd0\xb6";  // in no code page of Windows
     MapFolder(other).write(smallMap());
     EXPECT_EQ(3u, readMap(other).images.size());
     EXPECT_EQ(3u, readModel(other).size());

@@ -22,7 +22,7 @@ Affine3d anyMotion(RNG& random, double turn, double way)
     return {turned, moved};
 }
 
-//! Images of one place whose poses in the map are off, by `far` and by a third of it in radians; none of their pixels is.
+//! Images of one place with exact pixels, whose poses have errors of size `far`, and of a third of it in radians.
 struct WrongMap
 {
     Map map;
@@ -51,7 +51,7 @@ struct WrongMap
         }
     }
 
-    //! Where the map has the points: where most of its rays meet.
+    //! Matches with the points as the map triangulates them.
     std::vector<Match> matches(const Affine3d& truth) const
     {
         std::vector<Track> tracks(points.size());
@@ -63,23 +63,23 @@ struct WrongMap
         for (size_t k = 0; k < tracks.size(); k++)
         {
             Match match{pixels[k], {}};
-            if (place(tracks[k], match.point))
+            if (triangulatePoint(tracks[k], match.point))
                 found.push_back(match);
         }
         return found;
     }
 };
 
-// The mean of their strays' squares alone, of no full rank, has 54, 71 and 90 % inside 95 %.
-TEST(MapError, of_few_images_foretells_how_far_a_pose_in_their_map_is_off)
+// Without the isotropic part the covariance has no full rank: 54, 71 and 90 % are inside the 95 % limit.
+TEST(MapError, of_few_images_predicts_errors_of_poses)
 {
     RNG random(4);
     const int trials = 100;
-    const double level50 = 2.366, level95 = 7.815;  // chi^2 of three degrees of freedom
+    const double level50 = 2.366, level95 = 7.815;  // chi^2 with three degrees of freedom
     for (int images : {3, 4, 6})
     {
         int inside50 = 0, inside95 = 0;
-        double share = 0;  // of the error's square in what is told
+        double share = 0;  // of the squared error in the reported variance
         for (int trial = 0; trial < trials; trial++)
         {
             const WrongMap scene(random, images, .003);
@@ -90,12 +90,12 @@ TEST(MapError, of_few_images_foretells_how_far_a_pose_in_their_map_is_off)
             ASSERT_TRUE(refinePose(matches, Lens(VGA), pose, covariance));
             const Matx66d error =
                     inWorld(mapError(scene.map), pose, medianDistance(inCamera(pointsOf(matches), pose)));
-            const Matx33d told = error.get_minor<3, 3>(0, 0);
+            const Matx33d reported = error.get_minor<3, 3>(0, 0);
             const Vec3d moved = inverse(truth).translation() - inverse(pose).translation();
-            const double squared = moved.dot(told.inv(DECOMP_SVD) * moved);
+            const double squared = moved.dot(reported.inv(DECOMP_SVD) * moved);
             inside50 += squared < level50;
             inside95 += squared < level95;
-            share += moved.dot(moved) / trace(told) / trials;
+            share += moved.dot(moved) / trace(reported) / trials;
         }
         EXPECT_GT(inside50, 45) << images;
         EXPECT_GT(inside95, 90) << images;
@@ -103,7 +103,7 @@ TEST(MapError, of_few_images_foretells_how_far_a_pose_in_their_map_is_off)
     }
 }
 
-TEST(MapError, of_a_map_without_errors_is_none)
+TEST(MapError, of_an_exact_map_is_zero)
 {
     RNG random(4);
     const Matx66d none = mapError(WrongMap(random, 5, 0).map);

@@ -15,8 +15,8 @@ namespace opencv_test {
 namespace {
 using namespace cv::iib;
 
-constexpr uint32_t EQUIRECTANGULAR = 17;  // COLMAP's number
-const cv::iib::MapOptions FEW(400);       // points an image, since pairs take time by their square
+constexpr uint32_t EQUIRECTANGULAR = 17;  // number of the camera model in COLMAP
+const cv::iib::MapOptions FEW(400);       // points an image, since matching time is quadratic
 
 class Mapping : public WallTest
 {
@@ -28,21 +28,21 @@ protected:
     }
 };
 
-TEST_F(Mapping, images_are_found_in_a_model)
+TEST_F(Mapping, images_are_localized_in_a_map)
 {
     write(model(1, 40));
     size_t last = 0, all = 0;
-    std::string told;
+    std::string problems;
     const Localizer localizer(
             folder.path("sparse 0"), images(), 1000, [&](size_t done, size_t of, const std::string& problem) {
                 EXPECT_EQ(last + 1, done);
                 last = done;
                 all = of;
-                told += problem;
+                problems += problem;
             });
     EXPECT_EQ(7u + 21u, all);
     EXPECT_EQ(all, last);
-    EXPECT_EQ("6.png cannot be read: left out of the map", told);
+    EXPECT_EQ("6.png cannot be read: left out of the map", problems);
     const cv::Affine3d truth = poseAt(0.1, -0.1, 0.1);
     const Location location = localizer.localize(wall.image(truth) * 0.3, CAMERA);
     ASSERT_TRUE(location.found) << location.reason;
@@ -51,7 +51,7 @@ TEST_F(Mapping, images_are_found_in_a_model)
 }
 
 #if CV_VERSION_MAJOR < 5
-TEST_F(Mapping, of_points_of_orb_and_akaze)
+TEST_F(Mapping, maps_of_orb_and_akaze_points)
 {
     write(model(1, 40));
     MapOptions options;
@@ -67,7 +67,7 @@ TEST_F(Mapping, of_points_of_orb_and_akaze)
 }
 #endif
 
-//! Of the wall's size, 4 m: errors and deviations scale with the unit, wherever the origin is.
+// Errors and standard deviations scale with the unit, wherever the origin is.
 TEST_F(Mapping, in_any_unit_and_far_from_the_origin)
 {
     const cv::Affine3d truth = poseAt(0.1, -0.1, 0.1);
@@ -93,11 +93,11 @@ TEST_F(Mapping, in_any_unit_and_far_from_the_origin)
         }
 }
 
-// The poses of its images are off by 2 mm and .06 degrees, and so is what they place: by its matches alone a pose would tell a
-// twentieth of its error.
-TEST_F(Mapping, the_maps_own_error_is_told)
+// The map's images have errors of 2 mm and .06 degrees. A covariance from matches alone would report a twentieth of
+// that.
+TEST_F(Mapping, the_maps_own_error_is_reported)
 {
-    double told[2] = {0, 0}, squared = 0;
+    double reported[2] = {0, 0}, squared = 0;
     constexpr int COUNT = 8;
     for (int wrong = 0; wrong < 2; wrong++)
     {
@@ -121,16 +121,16 @@ TEST_F(Mapping, the_maps_own_error_is_told)
             ASSERT_TRUE(found.found) << found.reason;
             const cv::Matx33d covariance = found.covariance.get_minor<3, 3>(0, 0);
             const cv::Vec3d error = inverse(found.cameraFromWorld).translation() - truth.translation();
-            told[wrong] += cv::trace(covariance) / COUNT;
+            reported[wrong] += cv::trace(covariance) / COUNT;
             squared += wrong * error.dot(covariance.inv() * error) / COUNT;
         }
     }
     EXPECT_LT(squared, 3 * 3) << "of three degrees of freedom";
     EXPECT_GT(squared, 3 * .1);
-    EXPECT_GT(told[1], 10 * told[0]);
+    EXPECT_GT(reported[1], 10 * reported[0]);
 }
 
-TEST_F(Mapping, a_map_on_disk_finds_what_one_in_memory_does)
+TEST_F(Mapping, a_map_on_disk_equals_one_in_memory)
 {
     write(model(1, 40));
     const std::string made = folder.path("new/map");
@@ -141,7 +141,7 @@ TEST_F(Mapping, a_map_on_disk_finds_what_one_in_memory_does)
     EXPECT_TRUE(first.found);
     EXPECT_EQ(first.cameraFromWorld.matrix, second.cameraFromWorld.matrix);
     EXPECT_EQ(first.covariance, second.covariance);
-    // It is a COLMAP model too.
+    // The folder is a COLMAP model too.
     const std::vector<PosedImage> back = readModel(made);
     ASSERT_EQ(7u, back.size());
     EXPECT_EQ("left side/1.png", back[1].name);
@@ -151,7 +151,7 @@ TEST_F(Mapping, a_map_on_disk_finds_what_one_in_memory_does)
     EXPECT_GT(back[1].sees.size(), 200u);
 }
 
-TEST_F(Mapping, larger_images_are_reduced_and_points_stay_in_their_own_pixels)
+TEST_F(Mapping, larger_images_are_reduced_but_points_are_in_full_pixels)
 {
     write(model(1, 40));
     const std::string made = folder.path("small");
@@ -173,7 +173,7 @@ TEST_F(Mapping, larger_images_are_reduced_and_points_stay_in_their_own_pixels)
     const Location location = Localizer(made).localize(wall.image(truth) * .5, CAMERA);
     ASSERT_TRUE(location.found) << location.reason;
     EXPECT_LT(cv::norm(inverse(location.cameraFromWorld).translation() - truth.translation()), .01);
-    // On a disk places are floats, and the scale of a picture is that of its size.
+    // Files store pixels as floats, and the scale of a picture by its size.
     const Localizer inMemory(folder.path("sparse 0"), images(), 1000, {}, options);
     EXPECT_LT(cv::norm(location.covariance, inMemory.localize(wall.image(truth) * .5, CAMERA).covariance,
                       cv::NORM_L2 | cv::NORM_RELATIVE),
@@ -215,7 +215,7 @@ TEST_F(Mapping, images_that_share_no_points_are_paired_with_the_nearest)
 {
     Files files = model(1, 1);
     std::string& posed = files["images.bin"];
-    for (size_t image = 0, at = 8; image < 7; image++)  // each image sees a point of its own
+    for (size_t image = 0, at = 8; image < 7; image++)  // each image sees a different point
     {
         at = posed.find('\0', at + 64) + 1 + 8 + 16;
         posed[at] = char(image);
@@ -225,7 +225,7 @@ TEST_F(Mapping, images_that_share_no_points_are_paired_with_the_nearest)
     EXPECT_EQ("", messageOf([&] { Localizer(folder.path("sparse 0"), images(), 400, {}, FEW); }));
 }
 
-TEST(Triangulation, a_ray_that_contradicts_the_others_is_left_out)
+TEST(Triangulation, an_outlier_ray_is_left_out)
 {
     Map map;
     const cv::Point3d truth(.2, -.1, 5);
@@ -249,8 +249,8 @@ TEST(Triangulation, a_ray_that_contradicts_the_others_is_left_out)
     EXPECT_EQ(-1, map.images[2].sees[0]);
 }
 
-// There the derivatives of Cauchy's loss are 0.
-TEST(Triangulation, a_point_has_the_least_loss_of_its_rays)
+// The derivatives of Cauchy's loss vanish at the point.
+TEST(Triangulation, a_point_minimizes_the_loss_of_its_rays)
 {
     const cv::Point3d truth(.2, -.1, 5);
     const double errors[] = {1, -.7, .4, -2.5, .3};  // pixels
@@ -265,7 +265,7 @@ TEST(Triangulation, a_point_has_the_least_loss_of_its_rays)
         track.push_back(raysOf(size_t(i), image)[0]);
     }
     cv::Point3d point;
-    ASSERT_TRUE(place(track, point));
+    ASSERT_TRUE(triangulatePoint(track, point));
     ASSERT_EQ(5u, track.size());
     const auto lossAt = [&](const Numbers& step) {
         double loss = 0;
@@ -276,7 +276,7 @@ TEST(Triangulation, a_point_has_the_least_loss_of_its_rays)
     expectDerivatives(cv::Mat_<double>(1, 3, 0.), lossAt, 5);  // within a hundredth of a pixel
 }
 
-// In the second image a keypoint 20 pixels above each point has its very code, and the point's own differs in some bits.
+// In the second image a decoy 20 pixels above each keypoint has its exact code, and the keypoint's own code has noise.
 TEST(Rays, keypoints_are_matched_along_epipolar_lines)
 {
     constexpr size_t COUNT = 40;
@@ -308,7 +308,7 @@ TEST(Rays, keypoints_are_matched_along_epipolar_lines)
     }
     const MatchedRays found = matchPairs(images, {{0, 1}});
     EXPECT_EQ(COUNT, found.matches);
-    EXPECT_EQ(0u, found.fitting) << "without the poses";
+    EXPECT_EQ(0u, found.consistent) << "without the poses";
     ASSERT_EQ(COUNT, found.links.size());
     for (const RayMatch& link : found.links)
         EXPECT_EQ(2 * found.rays[link.a].keypoint, found.rays[link.b].keypoint);
@@ -345,7 +345,7 @@ TEST_F(Mapping, models_as_text)
         std::string wrong = text;
         wrong.replace(wrong.rfind(part), std::string(part).size(), other);
         folder.write("text/images.txt", wrong);
-        EXPECT_EQ(sparse + " is no COLMAP model, or a damaged one: images.txt is missing or damaged",
+        EXPECT_EQ(sparse + " is not a COLMAP model, or damaged: images.txt is missing or damaged",
                 messageOf([&] { readModel(sparse); }))
                 << other;
     }
@@ -353,7 +353,7 @@ TEST_F(Mapping, models_as_text)
 
 TEST_F(Mapping, a_damaged_model)
 {
-    const std::string begin = folder.path("sparse 0") + " is no COLMAP model, or a damaged one: ";
+    const std::string begin = folder.path("sparse 0") + " is not a COLMAP model, or damaged: ";
     const Files whole = model(1, 2);
     for (const auto& [name, content] : whole)
         for (size_t length = 0; length <= content.size() + 1; length++)
@@ -374,13 +374,13 @@ TEST_F(Mapping, a_damaged_model)
     }
     Files twice = whole;
     std::string& images = twice["images.bin"];
-    images[images.find("side/1.png") + 5] = '0';  // as another image is called
+    images[images.find("side/1.png") + 5] = '0';  // the name of another image
     EXPECT_EQ(begin + "images.bin is missing or damaged", error(twice));
     write(whole);
     folder.makeFolder("above");
     std::filesystem::rename(folder.path("sparse 0"), folder.path("above/0"));
     EXPECT_EQ(folder.path("above") +
-                      " is no COLMAP model, or a damaged one: cameras.bin is missing or damaged: did you "
+                      " is not a COLMAP model, or damaged: cameras.bin is missing or damaged: did you "
                       "mean " +
                       folder.path("above") + "/0?",
             messageOf([&] { readModel(folder.path("above")); }));
@@ -397,26 +397,26 @@ TEST_F(Mapping, an_image_of_another_size_is_left_out)
 {
     write(model(1, 40));
     cv::imwrite(folder.path("images/5.png"), cv::Mat(240, 300, CV_8U, cv::Scalar(9)));
-    std::set<std::string> told;
+    std::set<std::string> problems;
     Localizer(folder.path("sparse 0"), images(), 300,
-            [&](size_t, size_t, const std::string& problem) { told.insert(problem); });
+            [&](size_t, size_t, const std::string& problem) { problems.insert(problem); });
     EXPECT_EQ((std::set<std::string>{"", "6.png cannot be read: left out of the map",
                       "5.png: the image has 300 x 240 pixels and its camera 320 x 240: left out of the map"}),
-            told);
+            problems);
 }
 
-TEST_F(Mapping, a_model_of_others)
+TEST_F(Mapping, a_model_of_other_images)
 {
     EXPECT_NE(std::string::npos,
             error(model(1, 2, EQUIRECTANGULAR)).find("camera model 17 is not one of SIMPLE_"));
-    EXPECT_EQ("no point is found in any of the model's images: give those of which it was made; left "
+    EXPECT_EQ("no keypoint was found in any of the model's images: give the images that it was made of; left "
               "side/0.png "
               "cannot be read: left out of the map",
             error(model(1, 2), "map"));
     for (const char* name :
             {"left side/0.png", "left side/1.png", "left side/2.png", "3.png", "4.png", "5.png"})
         cv::imwrite(folder.path("images/" + std::string(name)), cv::Mat(240, 300, CV_8U, cv::Scalar(9)));
-    EXPECT_EQ("no point is found in any of the model's images: give those of which it was made; left "
+    EXPECT_EQ("no keypoint was found in any of the model's images: give the images that it was made of; left "
               "side/0.png: "
               "the image has 300 x 240 pixels and its camera 320 x 240: left out of the map",
             error(model(1, 2)));

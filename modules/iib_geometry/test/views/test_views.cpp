@@ -15,12 +15,12 @@ Matx33d turned(double degrees)
     return {c, -s, 0, s, c, 0, 0, 0, 1};
 }
 
-//! Shortened by the tilt along a direction, then reduced and turned, about the middle of a canvas as large as needed.
+//! Shortens an image by the tilt along a direction, then scales and rotates it, on a canvas that fits.
 struct Change
 {
     const char* name;
     double scale, degrees, tilt;
-    int least;  //!< right matches
+    int least;  //!< number of right matches
 
     Matx33d from(const Size& size, Size& canvas) const
     {
@@ -46,7 +46,7 @@ struct Change
     {
         Size canvas;
         truth = from(image.size(), canvas);
-        const int finer = 4;  // the mean of so many pixels a side is one, as a sensor has it
+        const int finer = 4;  // supersampling, like the area of a sensor's pixel
         const double shift = .5 * (finer - 1);
         Mat fine, result;
         warpPerspective(image, fine, Matx33d(finer, 0, shift, 0, finer, shift, 0, 0, 1) * truth,
@@ -126,7 +126,7 @@ TEST(Views, align_reduced_and_tilted_images)
     }
 }
 
-//! Squared errors over variances are about one along each axis, whatever the view did to the pixels.
+// Squared errors over variances are about one along each axis, whatever the view.
 TEST(Views, covariances_are_of_pixels_of_the_image)
 {
     Matx33d truth;
@@ -146,7 +146,7 @@ TEST(Views, covariances_are_of_pixels_of_the_image)
     EXPECT_LT(errors[errors.size() / 2], 3);
 }
 
-TEST(Views, an_ordinary_pair_has_the_matches_of_the_chain)
+TEST(Views, an_ordinary_pair_gets_the_matches_of_the_chain)
 {
     const Mat image = largePicture(3), other = inOtherLight(image);
     const Ptr<IIB> iib = IIB::createRecommended(500);
@@ -185,7 +185,7 @@ TEST(Views, refuses_images_of_other_scenes)
             matchViews(tiny, tiny, points1, points2, noArray(), noArray(), noArray(), 100, 4, mask, mask));
 }
 
-TEST(Views, one_matcher_serves_many_images_as_each_alone)
+TEST(Views, one_matcher_serves_many_images)
 {
     const Mat image = largePicture(4);
     const Ptr<ViewMatcher> matcher = ViewMatcher::create(image, 600);
@@ -224,7 +224,7 @@ TEST(Views, masks_hold_in_all_views)
                 cv::Exception);
 }
 
-TEST(Views, show_two_images_in_one_shape_without_enlarging)
+TEST(Views, show_two_images_in_one_shape_without_enlargement)
 {
     RNG random(3);
     for (int trial = 0; trial < 200; trial++)
@@ -241,15 +241,15 @@ TEST(Views, show_two_images_in_one_shape_without_enlarging)
         SVD::compute(left.get_minor<2, 2>(0, 0), scales, SVD::NO_UV);
         EXPECT_LT(scales[0], 1.3);
         EXPECT_GT(scales[1], 1 / 1.3);
-        EXPECT_NEAR(left(0, 1), left(1, 0), .3);  // nothing is turned
+        EXPECT_NEAR(left(0, 1), left(1, 0), .3);  // no rotation is left
         EXPECT_GT(left(0, 0), .7);
         for (const View& view : pair.views)
             EXPECT_LE(std::max(view.scales[0], view.scales[1]), 1);
     }
 }
 
-//! A spot comes to lie where the map has it.
-TEST(Views, pixels_are_where_their_map_has_them)
+// A spot must appear where the view's map projects it.
+TEST(Views, pixels_are_where_their_map_projects_them)
 {
     const Point2d spot(201, 77);
     Mat image(300, 400, CV_32F, Scalar(0));

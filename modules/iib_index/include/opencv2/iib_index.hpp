@@ -6,7 +6,7 @@
 #include "opencv2/core.hpp"
 
 /**
-@defgroup iib_index Binary codes in files, searched where they lie
+@defgroup iib_index Binary codes in files, searched in place
 */
 
 namespace cv {
@@ -15,88 +15,89 @@ namespace iib {
 //! @addtogroup iib_index
 //! @{
 
-/** @brief Binary codes in a folder, searched where they lie: for more codes than memory should hold, for several programs
-that search the same codes, and for programs that should be ready at once.
+/** @brief Binary codes in a folder, searched in place: for more codes than memory should hold, for several programs
+that share codes, and for a fast start.
 
-A folder has a manifest and segments. A segment is a file that never changes: the codes of the images that one call of
-add() added, packed as the search reads them, with a checksum for about every mebibyte. Segments are mapped into memory
-when they are first searched, and checked once, then. **From there on a segment must not be changed:** if it is shortened,
-the system ends the program that reads it (SIGBUS), and if it is overwritten, answers are wrong. To delete it, or to rename
-another file over it, does not disturb who has it mapped. No call of this class does any of that.
+A folder has a manifest and segments. A segment is a file that never changes. It holds the codes of the images of one
+call of add(), packed for the search, with a checksum for about every mebibyte. It is mapped into memory and checked
+when it is first searched. **A mapped segment must not be changed:** if it is shortened, the system ends the program
+(SIGBUS); if it is overwritten, results are wrong. Deleting it, or renaming another file over it, is harmless. No call
+of this class changes a segment.
 
-Rows are numbered through all images ever added, from 0, and so are images; removed ones keep their numbers.
+Rows and images are numbered from 0 in the order in which they were added; removed images keep their numbers.
 
-**Commits.** add() and remove() write what is new and then rename a new manifest into place. Whatever fails, a full disk or
-a killed process, the folder stays as it was after the last call that returned: a call that throws has committed nothing.
-Writers of one folder wait for each other, in one process or several; what each of them commits stays. Readers see the state
-that they opened until refresh(). The folder is the index's own; the next writer removes the unfinished files of a killed
-one (`segment-000001.iib.*.tmp`, `manifest.iib.*.tmp`), and no others.
+**Commits.** add() and remove() write new files, then rename a new manifest into place. After any failure, such as a
+full disk or a killed process, the folder is as after the last successful call. A call that throws has committed
+nothing. Writers of one folder wait for each other, in one process or several. Readers see the state that they opened
+until refresh(). The folder must hold nothing else; a writer removes the unfinished files of killed writers
+(`segment-000001.iib.*.tmp`, `manifest.iib.*.tmp`).
 
-**Machines.** Files are the same bytes on all. The packing that suits this machine's instruction set is used and named in
-the segment; a machine that searches another packing converts it when it is first searched, into memory.
+**Machines.** Files are portable. A segment names its packing, which suits the instruction set of the machine that wrote
+it. A machine with another packing converts the segment in memory on first use.
 
-**Threads.** Any number of threads may search one object as long as none calls add(), remove() or refresh() of it.
-Searches run on cv::parallel_for_; results are the same for every number of threads, every instruction set, and however
-the rows are spread over segments.
+**Threads.** Threads may search one object concurrently, unless one calls add(), remove() or refresh() of it.
+Searches run on cv::parallel_for_. Results do not depend on the number of threads, the instruction set or the segments.
 
-@throws cv::Exception from every call that reads a manifest, and from the first that reads a segment, if the file is missing,
-truncated, altered or of a newer version; it names the file. StsOutOfRange for a row, an image or a segment that is not there.
+@throws cv::Exception that names the file, from each call that reads a manifest and from the first that reads a segment,
+if the file is missing, truncated, altered or of a newer version. (StsOutOfRange) for a missing row, image or segment.
  */
 class CV_EXPORTS MappedIndex
 {
 public:
-    /** @brief Makes a folder, or takes an empty one, and commits an index without images.
+    /** @brief Commits an index without images to a new or empty folder.
 
-    @param folder the parent has to exist.
+    @param folder its parent must exist.
     @param levelSizes as in HierarchicalMatcher::create; a single level is enough.
-    @throws cv::Exception if the folder holds anything, or cannot be written.
+    @throws cv::Exception if the folder is not empty or cannot be written.
      */
     static Ptr<MappedIndex> create(const String& folder, const std::vector<int>& levelSizes);
 
-    //! Opens the last commit. Reads the manifest alone.
+    //! Opens the last commit. Reads only the manifest.
     static Ptr<MappedIndex> open(const String& folder);
 
     virtual ~MappedIndex();
 
     //! Bytes of each level, coarse first.
     virtual std::vector<int> levelSizes() const = 0;
-    //! Images ever added, removed ones too.
+    //! Number of images ever added, including removed ones.
     virtual int64 images() const = 0;
-    //! Rows of all images ever added.
+    //! Number of rows of these images.
     virtual int64 rows() const = 0;
-    //! Files that hold them, one for each call of add() that had images.
+    //! Number of segment files, one for each call of add() with images.
     virtual int segments() const = 0;
-    //! Changes with every commit: the manifest's checksum.
+    //! The manifest's checksum, which changes with every commit.
     virtual uint64 version() const = 0;
 
     //! The image of a row. Maps its segment.
     virtual int64 imageOf(int64 row) const = 0;
     //! The first row of an image. Maps its segment.
     virtual int64 firstRow(int64 image) const = 0;
-    //! The descriptors of an image as they were added. Maps its segment.
+    //! The descriptors of an image. Maps its segment.
     virtual Mat descriptors(int64 image) const = 0;
 
-    /** @brief Adds images behind those of the last commit, whoever made it, as one segment, and commits them.
+    /** @brief Commits images as one segment after those of the last commit, even one of another process.
 
-    @param descriptors a matrix for each image, CV_8U, a row a descriptor; or a single matrix. They are packed in memory
-    first. A search is at its best with segments of 10^5 rows and more: add many images at once.
+    @param descriptors one CV_8U matrix per image, a descriptor a row; or a single matrix. They are packed in memory
+    first. Add many images at once: searches are fastest with segments of 10^5 rows or more.
     @throws cv::Exception for descriptors of another type or width, and if the folder cannot be written.
      */
     virtual void add(InputArrayOfArrays descriptors) = 0;
 
-    //! Hides images of the last commit, whoever made it, from all searches, and commits that. Their codes stay on the disk.
+    //! Commits that images of the last commit, even one of another process, are hidden from searches. Their codes stay
+    //! on disk.
     virtual void remove(const std::vector<int64>& images) = 0;
 
-    //! Goes on to the last commit. Segments that were mapped stay so.
+    //! Switches to the last commit. Mapped segments stay mapped.
     virtual void refresh() = 0;
 
-    /** @brief The k nearest rows of each query by Hamming distance, as brute force finds them; ties in the order of rows.
+    /** @brief Finds the k nearest rows of each query by Hamming distance, as brute force does; ties in the order of
+    rows.
 
-    @param queryDescriptors CV_8U, a row a query.
+    @param queryDescriptors CV_8U, one query a row.
     @param k > 0.
-    @param rows queries x k, nearest first; -1 where there are fewer.
-    @param distances as many, in bits; -1 where there are fewer.
-    @param segment search this one alone; -1 for all.
+    @param rows queries x k, nearest first; -1 if there are fewer than k rows.
+    @param distances of these rows, in bits; -1 if there are fewer.
+    @param segment the only segment to search; -1 searches all.
     @throws cv::Exception for queries of another type or width, and (StsOutOfRange) for k < 1.
      */
     virtual void knnSearch(InputArray queryDescriptors, int k, std::vector<int64>& rows,

@@ -12,48 +12,47 @@ namespace iib {
 
 /** @brief Matches two images under changed illumination at any zoom, rotation and tilt.
 
-The images are matched as they are first: the recommended chain, then propagateMatches. If these matches are decisive, they are the
-answer. Else views of both images are simulated (@cite MorelYu2009) and compared by a few hundred points each:
+First the images themselves are matched: the recommended chain, then propagateMatches. Decisive matches are returned.
+Otherwise views of both images are simulated (@cite MorelYu2009) and compared by a few hundred points each:
 - either image reduced by up to 4, at rotations 30 degrees apart;
 - either image tilted by 2 (with maxTilt above 4 also by 4), upright, reduced and rotated.
 
-Views in which neighbouring matches agree give an affine map between the images. The images are matched again in the views of that map, with
-all points, of the part that both show. The answer is the pair of views with the fewest false alarms (logFalseAlarms, of a fundamental
-matrix or a homography). Matches that agree with this geometry are propagated a second time where many others do not.
+Views in which neighbouring matches agree give an affine map between the images. The images are matched again in its
+views, with all points of the common part. The pair of views with the fewest false alarms (logFalseAlarms, of a
+fundamental matrix or a homography) wins. If many of its matches are outliers, the inliers alone are propagated again.
 
-The result is significant if fewer than one in a thousand such results is expected among random matches, over all pairs of views that were
-compared. It is the same for every number of threads.
+The result is significant if fewer than one in a thousand such results is expected among random matches, over all pairs
+of views that were compared. It does not depend on the number of threads.
 
-Cost: a pair that matches as it is takes the time of detection, description, matching and propagation. A search takes three to fourteen times
-as long with 1000 points, and 30 times as long if it finds nothing.
+Cost: without a search, the time of detection, description, matching and propagation. A search takes 3 to 14 times as
+long with 1000 points, and 30 times as long if it finds nothing.
 
 Limits:
-- Images of more than 640 pixels are reduced to 640 for the search, and to 1024 for the matches that a search leads to. The covariances are
+- Images of more than 640 pixels are reduced to 640 for the search, and to 1024 for matching after it. Covariances are
   those of the reduced images, in pixels of the originals.
-- Views are affine: one part of a scene with strong perspective may match alone.
-- Mirrored images are not searched for. A symmetric picture and its mirror image may match all the same.
+- Views are affine: in a scene with strong perspective one part alone may match.
+- Mirrored images are not searched for, but a symmetric picture may match its mirror image.
 
 @param image1, image2 as in IIBDescriptorExtractor::compute
-@param points1, points2 N x 2, CV_32F, pixels: matched points of both images. If the result is false, the best matches there are
+@param points1, points2 N x 2, CV_32F, pixels: matched points of both images; the best ones if the result is false
 @param covariances N x 3, CV_32F: xx, xy and yy of points2 given points1, squared pixels, as refineMatches
 @param similarities N x 1, CV_32F, as refineMatches
-@param view 3 x 3, CV_64F: approximate affine map from pixels of image 1 to pixels of image 2; empty if the result is false
-@param maxFeatures keypoints of each image, at most; 0 keeps all
-@param maxTilt largest tilt between the images that is searched for, 1 to 8: the factor by which one axis is shortened. Up to 2 no tilted
-    views are needed
-@param mask1, mask2 CV_8UC1 of the size of their image, 0 where no keypoints are to be found
-@param reason if not null: why the result is false, a sentence; else empty
-@return whether more matches agree with one geometry than random matches would
-@throws cv::Exception (StsOutOfRange) for another maxTilt or maxFeatures, (StsBadArg) for masks of another size or type, and as
-    IIBDescriptorExtractor::compute for images */
+@param view 3 x 3, CV_64F: approximate affine map from pixels of image 1 to those of image 2; empty if false
+@param maxFeatures largest number of keypoints of each image; 0 keeps all
+@param maxTilt largest tilt to search for, 1 to 8: the factor by which one axis is shortened. Up to 2, no view is tilted
+@param mask1, mask2 CV_8UC1 of the size of their image, 0 where no keypoints are wanted
+@param reason if not null, receives a sentence that says why the result is false; empty if it is true
+@return whether the matches that agree with one geometry are significant
+@throws cv::Exception (StsOutOfRange) for another maxTilt or maxFeatures, (StsBadArg) for masks of another size or type,
+    and as IIBDescriptorExtractor::compute for images */
 CV_EXPORTS_W bool matchViews(InputArray image1, InputArray image2, OutputArray points1, OutputArray points2,
         OutputArray covariances = noArray(), OutputArray similarities = noArray(),
         OutputArray view = noArray(), int maxFeatures = 4000, double maxTilt = 4,
         InputArray mask1 = noArray(), InputArray mask2 = noArray(), CV_OUT String* reason = nullptr);
 
-/** @brief Matches one image with many others as matchViews does, and computes its views once.
+/** @brief Matches one image with many others as matchViews does, but computes its views once.
 
-The image is not copied; its pixels must stay. Threads may share one object. */
+The image is not copied; its pixels must stay valid. Threads may share one object. */
 class CV_EXPORTS_W ViewMatcher
 {
 public:

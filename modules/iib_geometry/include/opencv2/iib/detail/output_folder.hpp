@@ -14,16 +14,16 @@ namespace iib {
 
 //! @cond IGNORED
 
-//! A folder that results are written to, by this module or the Python package; no other process writes results to it meanwhile.
+//! A folder of results of this module or the Python package, locked against other processes that write results.
 class CV_EXPORTS OutputFolder
 {
 public:
-    /** Makes the folder if it is missing. A link is followed, also if nothing is at its end yet.
-    @param isOwn whether a file may be there, by its name relative to the folder: of earlier results. Empty folders may, and .DS_Store,
-    Thumbs.db and desktop.ini, which file managers write.
+    /** Makes the folder if it is missing. Follows a link, even one whose target does not exist yet.
+    @param isOwn whether a file belongs to earlier results, by its name relative to the folder. Empty folders and the
+    files of file managers (.DS_Store, Thumbs.db, desktop.ini) are accepted too.
     @throws cv::Exception if it holds anything else, cannot be written, or is being written by another process. */
     OutputFolder(const std::string& folder, const std::function<bool(const std::string&)>& isOwn);
-    //! Removes the folder if it was made here and is empty.
+    //! Removes the folder if this object made it and it is empty.
     ~OutputFolder();
     OutputFolder(const OutputFolder&) = delete;
     OutputFolder& operator=(const OutputFolder&) = delete;
