@@ -6,7 +6,7 @@
 
 #include "../../common/vectors.simd.hpp"
 #include "kernels.hpp"
-#include "mappings.hpp"
+#include "more_mappings.hpp"
 
 namespace cv {
 namespace iib {
