@@ -71,49 +71,63 @@ namespace iib {
 
 namespace {
 
-/** The bits of a quad in each channel.
- @param top, bottom the sums of its upper and lower two cells. @param weights that make the four sums comparable.
- @param planes gets a byte for each bit of the mapping, with the bit of channel c at its place c. */
-typedef void (*MapQuad)(const unsigned* top, const unsigned* bottom, const int weights[4], uchar* planes);
+//! The bits of a quad: a byte for each bit of the mapping, with the bit of channel c at its place c.
+typedef uchar QuadBits[8];
+
+//! Factors that make the sums over the four cells of a quad comparable.
+typedef int QuadWeights[4];
+
+/** The bits of every other quad of a row, the first one at its left end.
+ @param top, bottom the sums over the cells of the row, and of the row below. */
+typedef void (*MapRow)(const unsigned* top, const unsigned* bottom, const QuadWeights* weights, int quads, QuadBits* bits);
 
 template <typename Mapping>
-void mapQuad(const unsigned* top, const unsigned* bottom, const int weights[4], uchar* planes)
+void mapRow(const unsigned* top, const unsigned* bottom, const QuadWeights* weights, int quads, QuadBits* bits)
 {
-    std::fill_n(planes, (int)Mapping::BITS, (uchar)0);
-    for (int c = 0; c < CHANNELS; c++)
+    for (int q = 0; q < quads; q++, top += 2 * CHANNELS, bottom += 2 * CHANNELS)
     {
-        const int64 x[4] = {(int64)top[c] * weights[0], (int64)top[CHANNELS + c] * weights[1],
-                (int64)bottom[c] * weights[2], (int64)bottom[CHANNELS + c] * weights[3]};
-        Mapping::map(x, [&](int bit, bool b) { planes[bit] |= (uchar)(b << c); });
+        uchar* const quad = bits[q];
+        const int* const w = weights[q];
+        std::fill_n(quad, (int)Mapping::BITS, (uchar)0);
+        for (int c = 0; c < CHANNELS; c++)
+        {
+            const int64 x[4] = {(int64)top[c] * w[0], (int64)top[CHANNELS + c] * w[1], (int64)bottom[c] * w[2],
+                    (int64)bottom[CHANNELS + c] * w[3]};
+            Mapping::map(x, [&](int bit, bool b) { quad[bit] |= (uchar)(b << c); });
+        }
     }
 }
 
 //! The same where four times the largest weighted sum fits an int.
 template <typename Mapping>
-void mapSmallQuad(const unsigned* top, const unsigned* bottom, const int weights[4], uchar* planes)
+void mapSmallRow(const unsigned* top, const unsigned* bottom, const QuadWeights* weights, int quads, QuadBits* bits)
 {
 #if CV_SIMD128
     const auto weighted = [](const unsigned* sums, int weight) {
-        const v_int32x4 v = v_reinterpret_as_s32(v_load(sums));
-        return Lanes(weight == 1 ? v : v_mul(v, v_setall_s32(weight)));
+        return Lanes(v_mul(v_reinterpret_as_s32(v_load(sums)), v_setall_s32(weight)));
     };
-    const Lanes x[4] = {weighted(top, weights[0]), weighted(top + CHANNELS, weights[1]),
-            weighted(bottom, weights[2]), weighted(bottom + CHANNELS, weights[3])};
-    Mapping::map(x, [&](int bit, const Lanes& b) { planes[bit] = (uchar)v_signmask(b.v); });
+    for (int q = 0; q < quads; q++, top += 2 * CHANNELS, bottom += 2 * CHANNELS)
+    {
+        uchar* const quad = bits[q];
+        const int* const w = weights[q];
+        const Lanes x[4] = {weighted(top, w[0]), weighted(top + CHANNELS, w[1]), weighted(bottom, w[2]),
+                weighted(bottom + CHANNELS, w[3])};
+        Mapping::map(x, [&](int bit, const Lanes& b) { quad[bit] = (uchar)v_signmask(b.v); });
+    }
 #else
-    mapQuad<Mapping>(top, bottom, weights, planes);
+    mapRow<Mapping>(top, bottom, weights, quads, bits);
 #endif
 }
 
 struct QuadMapping
 {
     int bits;
-    MapQuad map, mapSmall;
+    MapRow map, mapSmall;
 };
 
 template <typename Mapping> QuadMapping quadMapping()
 {
-    const QuadMapping mapping = {Mapping::BITS, mapQuad<Mapping>, mapSmallQuad<Mapping>};
+    const QuadMapping mapping = {Mapping::BITS, mapRow<Mapping>, mapSmallRow<Mapping>};
     return mapping;
 }
 
@@ -330,21 +344,29 @@ struct Region
 class BitWriter
 {
 public:
-    explicit BitWriter(uchar* zeros) : bytes(zeros), place(0) {}
-
-    //! @param count up to 8.
-    void append(unsigned bits, int count)
+    explicit BitWriter(uchar* bytes) : next(bytes), pending(0), count(0) {}
+    //! The last byte is padded with zeros.
+    ~BitWriter()
     {
-        bits <<= place % 8;
-        bytes[place / 8] |= (uchar)bits;
-        if (bits >> 8)
-            bytes[place / 8 + 1] |= (uchar)(bits >> 8);
-        place += count;
+        if (count)
+            *next = (uchar)pending;
+    }
+
+    void append(unsigned bits, int n)
+    {
+        pending |= bits << count;
+        count += n;
+        if (count < 8)
+            return;
+        *next++ = (uchar)pending;
+        pending >>= 8;
+        count -= 8;
     }
 
 private:
-    uchar* bytes;
-    size_t place;
+    uchar* next;
+    unsigned pending;
+    int count;
 };
 
 //! Describes keypoints, one after another, in one thread.
@@ -375,7 +397,6 @@ public:
             yEdges[i] = region.row(region.side / finest * i);
         }
         sumCells();
-        std::fill_n(descriptor, std::accumulate(levelBytes.begin(), levelBytes.end(), 0), (uchar)0);
         uchar* level = descriptor + std::accumulate(levelBytes.begin(), levelBytes.end(), 0);
         for (int g = parameters.granularity; g >= 1; g--)
         {
@@ -386,28 +407,36 @@ public:
     }
 
 private:
-    const unsigned* corner(int x, int y) const
-    {
-        return integral.ptr<unsigned>(y - origin.y) + CHANNELS * (size_t)(x - origin.x);
-    }
     unsigned* cell(int n, int row, int column) { return &cells[((size_t)row * n + column) * CHANNELS]; }
 
+    //! Of the finest cells: differences of the integral image at their corners.
     void sumCells()
     {
         for (int r = 0; r < finest; r++)
-            for (int c = 0; c < finest; c++)
-            {
-                const unsigned *const a = corner(xEdges[c], yEdges[r]), *const b = corner(xEdges[c + 1], yEdges[r]),
-                               *const d = corner(xEdges[c], yEdges[r + 1]),
-                               *const e = corner(xEdges[c + 1], yEdges[r + 1]);
-                unsigned* const out = cell(finest, r, c);
+        {
+            const unsigned *const top = integral.ptr<unsigned>(yEdges[r] - origin.y),
+                           *const bottom = integral.ptr<unsigned>(yEdges[r + 1] - origin.y);
+            unsigned* out = cell(finest, r, 0);
+            size_t at = CHANNELS * (size_t)(xEdges[0] - origin.x);
 #if CV_SIMD128
-                v_store(out, v_sub(v_sub(v_load(e), v_load(d)), v_sub(v_load(b), v_load(a))));
-#else
-                for (int i = 0; i < CHANNELS; i++)
-                    out[i] = e[i] - d[i] - (b[i] - a[i]);
-#endif
+            v_uint32x4 left = v_sub(v_load(bottom + at), v_load(top + at));
+            for (int c = 1; c <= finest; c++, out += CHANNELS)
+            {
+                at = CHANNELS * (size_t)(xEdges[c] - origin.x);
+                const v_uint32x4 right = v_sub(v_load(bottom + at), v_load(top + at));
+                v_store(out, v_sub(right, left));
+                left = right;
             }
+#else
+            for (int c = 1; c <= finest; c++)
+            {
+                const size_t left = at;
+                at = CHANNELS * (size_t)(xEdges[c] - origin.x);
+                for (int i = 0; i < CHANNELS; i++)
+                    *out++ = bottom[at + i] - top[at + i] - (bottom[left + i] - top[left + i]);
+            }
+#endif
+        }
     }
 
     //! From n x n cells to half as many in a row, in place.
@@ -433,7 +462,7 @@ private:
     void writeLevel(int n, double longest, uchar* level)
     {
         BitWriter writer(level);
-        const double largest = 4. * MAX_VALUE * longest * longest;
+        const bool small = 4. * MAX_VALUE * std::pow(longest, 4) <= INT_MAX;
         for (int dy = 0; dy <= (int)parameters.overlap; dy++)
             for (int dx = 0; dx <= (int)parameters.overlap; dx++)
                 for (int r = dy; r + 1 < n; r += 2)
@@ -443,14 +472,16 @@ private:
                     for (int c = dx; c + 1 < n; c += 2, quads++)
                     {
                         weightsOf(xEdges, n, c, x);
-                        const int weights[4] = {y[0] * x[0], y[0] * x[1], y[1] * x[0], y[1] * x[1]};
-                        const double factor = std::max(std::max(weights[0], weights[1]), std::max(weights[2], weights[3]));
-                        (largest * factor <= INT_MAX ? mapping.mapSmall : mapping.map)(
-                                cell(n, r, c), cell(n, r + 1, c), weights, planes[quads]);
+                        int* const w = weights[quads];
+                        w[0] = y[0] * x[0];
+                        w[1] = y[0] * x[1];
+                        w[2] = y[1] * x[0];
+                        w[3] = y[1] * x[1];
                     }
+                    (small ? mapping.mapSmall : mapping.map)(cell(n, r, dx), cell(n, r + 1, dx), weights, quads, bits);
                     for (int bit = 0; bit < mapping.bits; bit++)
                         for (int q = 0; q < quads; q++)
-                            writer.append(compact[planes[q][bit]], channelsInUse);
+                            writer.append(compact[bits[q][bit]], channelsInUse);
                 }
     }
 
@@ -464,7 +495,8 @@ private:
     uchar compact[1 << CHANNELS];
     std::vector<int> xEdges, yEdges;  //!< of the finest cells
     std::vector<unsigned> cells;
-    uchar planes[1 << (MAX_GRANULARITY - 1)][8];  //!< of the quads of a row
+    QuadWeights weights[1 << (MAX_GRANULARITY - 1)];  //!< of the quads of a row
+    QuadBits bits[1 << (MAX_GRANULARITY - 1)];
 };
 
 class IIBDescriptorExtractor_Impl CV_FINAL : public IIBDescriptorExtractor
