@@ -3,79 +3,10 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "descriptor_oracle.hpp"
+#include "support/textures.hpp"
 
 namespace opencv_test {
 namespace {
-
-//! Pseudorandom integers, the same everywhere (SplitMix64).
-class Integers
-{
-public:
-    explicit Integers(uint64 seed) : state(seed) {}
-
-    //! 0 <= result < end
-    int below(int end)
-    {
-        uint64 z = state += CV_BIG_UINT(0x9e3779b97f4a7c15);
-        z = (z ^ z >> 30) * CV_BIG_UINT(0xbf58476d1ce4e5b9);
-        z = (z ^ z >> 27) * CV_BIG_UINT(0x94d049bb133111eb);
-        return (int)((z ^ z >> 31) % (unsigned)end);
-    }
-    int between(int begin, int end) { return begin + below(end - begin); }
-
-private:
-    uint64 state;
-};
-
-//! Binomial weights along rows or columns; the border is repeated.
-Mat_<int> blurred(const Mat_<int>& m, Point direction)
-{
-    const int weights[] = {1, 4, 6, 4, 1};
-    Mat_<int> result(m.size());
-    for (int y = 0; y < m.rows; y++)
-        for (int x = 0; x < m.cols; x++)
-        {
-            int sum = 8;
-            for (int i = -2; i <= 2; i++)
-                sum += weights[i + 2] * m(std::min(std::max(y + i * direction.y, 0), m.rows - 1),
-                                                std::min(std::max(x + i * direction.x, 0), m.cols - 1));
-            result(y, x) = sum / 16;
-        }
-    return result;
-}
-
-//! Blurred noise with a flat place in it: gradients of all sizes. Made of integers alone.
-Mat texture(Size size, int seed)
-{
-    Integers integers(seed);
-    Mat_<int> m(size);
-    for (int& pixel : m)
-        pixel = integers.below(256);
-    if (size.width > 16 && size.height > 16)
-    {
-        m = blurred(blurred(m, Point(1, 0)), Point(0, 1));
-        m(Rect(size.width / 4, size.height / 4, size.width / 3, size.height / 3)) = 77;
-    }
-    Mat result;
-    m.convertTo(result, CV_8U);
-    return result;
-}
-
-//! Keypoints in and around an image, of all sizes, at quarters of pixels.
-std::vector<KeyPoint> scatter(Size size, int count, float smallest, float largest, int seed)
-{
-    Integers integers(seed);
-    std::vector<KeyPoint> keypoints;
-    for (int i = 0; i < count; i++)
-    {
-        const int part = i % 4 ? 4 : 1;
-        const float x = integers.between(-size.width * part / 5, size.width * part * 6 / 5) / (float)part;
-        const float y = integers.between(-size.height * part / 5, size.height * part * 6 / 5) / (float)part;
-        const float angle = i % 5 ? (float)integers.below(360) : -1.f;
-        keypoints.push_back(KeyPoint(x, y, integers.between((int)(smallest * 8), (int)(largest * 8)) / 8.f, angle));
-    }
-    return keypoints;
-}
 
 //! Computes descriptors and expects that the keypoints stay as they are.
 Mat describe(IIB& iib, InputArray image, const std::vector<KeyPoint>& keypoints)
@@ -83,9 +14,7 @@ Mat describe(IIB& iib, InputArray image, const std::vector<KeyPoint>& keypoints)
     std::vector<KeyPoint> copy = keypoints;
     Mat descriptors;
     iib.compute(image, copy, descriptors);
-    EXPECT_EQ(keypoints.size(), copy.size());
-    for (size_t i = 0; i < std::min(keypoints.size(), copy.size()); i++)
-        EXPECT_EQ(keypoints[i].pt, copy[i].pt);
+    expectSameKeyPoints(keypoints, copy);
     EXPECT_EQ(Size(iib.descriptorSize(), (int)keypoints.size()), descriptors.size());
     EXPECT_EQ(CV_8U, descriptors.type());
     return descriptors;
@@ -96,25 +25,15 @@ void expectOracle(IIB& iib, const Mat& image, const std::vector<KeyPoint>& keypo
     const Mat expected = oracle::describe(iib, image, keypoints), actual = describe(iib, image, keypoints);
     ASSERT_EQ(expected.size(), actual.size());
     for (int i = 0; i < expected.rows; i++)
-        ASSERT_EQ(0, cvtest::norm(expected.row(i), actual.row(i), NORM_HAMMING))
+        ASSERT_EQ(0, differingBits(expected.row(i), actual.row(i)))
                 << "keypoint " << i << " at " << keypoints[i].pt << " size " << keypoints[i].size;
-}
-
-//! FNV-1a of the bytes of all rows.
-uint64 hashOf(const Mat& m)
-{
-    uint64 hash = CV_BIG_UINT(0xcbf29ce484222325);
-    for (int y = 0; y < m.rows; y++)
-        for (int x = 0; x < m.cols; x++)
-            hash = (hash ^ m.at<uchar>(y, x)) * CV_BIG_UINT(0x100000001b3);
-    return hash;
 }
 
 typedef testing::TestWithParam<int> IIB_Mapping;
 
 TEST_P(IIB_Mapping, bits_as_the_equations)
 {
-    const Mat image = texture(Size(110, 91), 1);
+    const Mat image = texture(Size(110, 91), CV_8U, 1);
     for (int granularity = 1; granularity <= 6; granularity++)
         for (int overlap = 0; overlap < 2; overlap++)
         {
@@ -126,7 +45,7 @@ TEST_P(IIB_Mapping, bits_as_the_equations)
 
 TEST_P(IIB_Mapping, coarser_descriptor_is_a_prefix)
 {
-    const Mat image = texture(Size(180, 160), 1);
+    const Mat image = texture(Size(180, 160), CV_8U, 1);
     const std::vector<KeyPoint> keypoints = scatter(image.size(), 30, 65.f, 120.f, 2);
     for (int overlap = 0; overlap < 2; overlap++)
     {
@@ -139,7 +58,7 @@ TEST_P(IIB_Mapping, coarser_descriptor_is_a_prefix)
             iib->setGranularity(granularity);
             EXPECT_EQ(std::vector<int>(sizes.begin(), sizes.begin() + granularity), iib->levelSizes());
             const Mat coarse = describe(*iib, image, keypoints);
-            EXPECT_EQ(0, cvtest::norm(coarse, fine.colRange(0, coarse.cols), NORM_HAMMING));
+            EXPECT_EQ(0, differingBits(coarse, fine.colRange(0, coarse.cols)));
         }
     }
 }
@@ -148,7 +67,7 @@ INSTANTIATE_TEST_CASE_P(/**/, IIB_Mapping, testing::Range((int)IIB::MAPPING_MEAN
 
 TEST(IIB_Descriptor, every_set_of_channels)
 {
-    const Mat image = texture(Size(101, 97), 2);
+    const Mat image = texture(Size(101, 97), CV_8U, 2);
     for (int channels = 1; channels < 16; channels++)
     {
         SCOPED_TRACE(channels);
@@ -162,7 +81,7 @@ TEST(IIB_Descriptor, images_of_every_width)
     for (int width = 1; width < 100; width++)
     {
         SCOPED_TRACE(width);
-        const Mat image = texture(Size(width, 1 + (width - 1) % 23), width);
+        const Mat image = texture(Size(width, 1 + (width - 1) % 23), CV_8U, width);
         expectOracle(*iib, image, scatter(image.size(), 6, 4.f, 50.f, width));
     }
 }
@@ -170,26 +89,26 @@ TEST(IIB_Descriptor, images_of_every_width)
 // Sums leave 32 bits of products at the coarse levels.
 TEST(IIB_Descriptor, large_regions_of_support)
 {
-    const Mat image = texture(Size(500, 440), 5);
+    const Mat image = texture(Size(500, 440), CV_8U, 5);
     for (int mapping = IIB::MAPPING_MEAN; mapping <= IIB::MAPPING_SORT; mapping++)
         expectOracle(*IIB::create(1.f, 3, 15, mapping), image, scatter(image.size(), 4, 100.f, 900.f, mapping));
 }
 
 TEST(IIB_Descriptor, parts_and_colours_of_an_image)
 {
-    const Mat whole = texture(Size(150, 140), 6), part = whole(Rect(13, 9, 101, 97));
+    const Mat whole = texture(Size(150, 140), CV_8U, 6), part = whole(Rect(13, 9, 101, 97));
     const std::vector<KeyPoint> keypoints = scatter(part.size(), 20, 10.f, 60.f, 7);
     const Ptr<IIB> iib = IIB::create();
     const Mat expected = describe(*iib, part.clone(), keypoints);
-    EXPECT_EQ(0, cvtest::norm(expected, describe(*iib, part, keypoints), NORM_HAMMING));
+    EXPECT_EQ(0, differingBits(expected, describe(*iib, part, keypoints)));
     UMat device;
     part.copyTo(device);
-    EXPECT_EQ(0, cvtest::norm(expected, describe(*iib, device, keypoints), NORM_HAMMING));
+    EXPECT_EQ(0, differingBits(expected, describe(*iib, device, keypoints)));
     for (int code : {COLOR_GRAY2BGR, COLOR_GRAY2BGRA})
     {
         Mat colour;
         cvtColor(part, colour, code);
-        EXPECT_EQ(0, cvtest::norm(expected, describe(*iib, colour, keypoints), NORM_HAMMING));
+        EXPECT_EQ(0, differingBits(expected, describe(*iib, colour, keypoints)));
     }
 }
 
@@ -206,17 +125,17 @@ TEST(IIB_Descriptor, orientation_is_the_gradients)
 
 TEST(IIB_Descriptor, more_light_changes_few_bits)
 {
-    const Mat image = texture(Size(320, 240), 8);
+    const Mat image = texture(Size(320, 240), CV_8U, 8);
     Mat lit;
     image.convertTo(lit, CV_8U, 0.6, 40);
     const std::vector<KeyPoint> keypoints = scatter(image.size(), 100, 20.f, 40.f, 9);
     const Ptr<IIB> iib = IIB::create();
     const Mat a = describe(*iib, image, keypoints), b = describe(*iib, lit, keypoints);
-    EXPECT_LT(cvtest::norm(a, b, NORM_HAMMING), 0.1 * 8 * (double)a.total());
+    EXPECT_LT(differingBits(a, b), 0.1 * 8 * (double)a.total());
     // where all values have room, none
     const Ptr<IIB> gradients = IIB::create(2.f, 4, IIB::CHANNEL_GRAD_X | IIB::CHANNEL_GRAD_Y | IIB::CHANNEL_INTENSITY);
     Mat dark = image / 4, bright = dark * 3 + Scalar(50);
-    EXPECT_EQ(0, cvtest::norm(describe(*gradients, dark, keypoints), describe(*gradients, bright, keypoints), NORM_HAMMING));
+    EXPECT_EQ(0, differingBits(describe(*gradients, dark, keypoints), describe(*gradients, bright, keypoints)));
 }
 
 /* The exact bits, which no build, machine or later version may change: descriptors in files would no longer match. The
@@ -253,7 +172,7 @@ TEST(IIB_Descriptor, golden_bits)
         SCOPED_TRACE(cv::format("%d channels in the image, G %d, channels %d, mapping %d, overlap %d", g.imageChannels,
                 g.granularity, g.channels, g.mapping, g.overlap));
         const Ptr<IIB> iib = IIB::create(2.f, g.granularity, g.channels, g.mapping, g.overlap);
-        const Mat image = texture(Size(size.width * g.imageChannels, size.height), 1).reshape(g.imageChannels);
+        const Mat image = texture(Size(size.width * g.imageChannels, size.height), CV_8U, 1).reshape(g.imageChannels);
         EXPECT_EQ(g.hash, hashOf(describe(*iib, image, keypoints)));
     }
 }
@@ -286,7 +205,7 @@ TEST(IIB_Descriptor, properties)
 TEST(IIB_Descriptor, empty_input_gives_empty_output)
 {
     const Ptr<IIB> iib = IIB::create();
-    const Mat image = texture(Size(64, 64), 1);
+    const Mat image = texture(Size(64, 64), CV_8U, 1);
     std::vector<KeyPoint> none, one(1, KeyPoint(30, 30, 7));
     Mat descriptors(3, 3, CV_8U);
     iib->compute(image, none, descriptors);
@@ -311,7 +230,7 @@ TEST(IIB_Descriptor, wrong_input_throws)
     EXPECT_THROW(iib->setMapping(IIB::MAPPING_SORT + 1), cv::Exception);
     EXPECT_EQ(IIB::MAPPING_MEAN, iib->getMapping());
 
-    const Mat image = texture(Size(64, 64), 1);
+    const Mat image = texture(Size(64, 64), CV_8U, 1);
     Mat descriptors;
     for (const KeyPoint& wrong : {KeyPoint(nan, 1, 7), KeyPoint(1, inf, 7), KeyPoint(1, 1, 0), KeyPoint(1, 1, nan)})
     {
@@ -327,7 +246,7 @@ TEST(IIB_Descriptor, wrong_input_throws)
 
 TEST(IIB_Descriptor, any_number_of_threads)
 {
-    const Mat image = texture(Size(200, 160), 3);
+    const Mat image = texture(Size(200, 160), CV_8U, 3);
     const std::vector<KeyPoint> keypoints = scatter(image.size(), 200, 5.f, 40.f, 4);
     const Ptr<IIB> iib = IIB::create();
     const int threads = getNumThreads();
@@ -336,7 +255,7 @@ TEST(IIB_Descriptor, any_number_of_threads)
     setNumThreads(4);
     const Mat four = describe(*iib, image, keypoints);
     setNumThreads(threads);
-    EXPECT_EQ(0, cvtest::norm(one, four, NORM_HAMMING));
+    EXPECT_EQ(0, differingBits(one, four));
 }
 
 }  // namespace
