@@ -11,7 +11,7 @@ import re
 import sys
 
 import summaries
-from releases import artifacts, fuzzing, night
+from releases import artifacts, first_patch, fuzzing, night
 from summaries import table
 from timings import RESULTS, chains, describing, machine, matching, rows, same_points, speed_claim, step_by_step
 
@@ -552,6 +552,6 @@ QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, views, views_chosen_on, views_affine, views_run, views_guide, how_sure, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
     step_by_step, fuzzing, mapped_index, scale_run, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, classic_detectors, learned_claim, learned_limit, estimator_limit, learned_guide, pose_pairs,
-    detected_points, uncertainty, night, artifacts)}
+    detected_points, uncertainty, night, artifacts, first_patch)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})

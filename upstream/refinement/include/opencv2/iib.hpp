@@ -15,6 +15,7 @@ keypoint's region of support @cite Lin2023IIB.
 #include "opencv2/iib/descriptor.hpp"
 #include "opencv2/iib/hessian_detector.hpp"
 #include "opencv2/iib/matcher.hpp"
+#include "opencv2/iib/normalized_detector.hpp"
 #include "opencv2/iib/refinement.hpp"
 
 #endif
