@@ -50,8 +50,8 @@ trap 'rm -rf "$work"' EXIT
 limit_of() {
     case "$1" in
     descriptor) echo 160000 25 ;;
-    matcher) echo 999999 99 ;;
-    presets) echo 999999 99 ;;
+    matcher) echo 206000 39 ;;
+    presets) echo 355000 58 ;;
     *) echo 120000 40 ;;
     esac
 }
@@ -63,7 +63,7 @@ branch_of() {
     */kernels/mappings.hpp | */orientation.hpp | */features.hpp | test/test_main.cpp | perf/perf_main.cpp) echo descriptor ;;
     */textures.* | */oracle_pixels.hpp) echo descriptor ;;
     CMakeLists.txt | cmake/* | src/precomp.hpp | test/test_precomp.hpp | */detail/code_layout.hpp | */detail/packed_codes.hpp) echo matcher ;;
-    */iib/matcher.hpp | src/matcher/* | */vectors.simd.hpp | */aligned_buffer.hpp | */outputs.hpp) echo matcher ;;
+    */iib/matcher.hpp | src/matcher/* | src/common/vectors.simd.hpp | */aligned_buffer.hpp | */outputs.hpp) echo matcher ;;
     src/common/file* | */checked_file.* | */detail/files.hpp | */test_errors.hpp) echo matcher ;;
     */test_matcher.cpp | */test_matcher_chunks.cpp | */matcher_oracle.* | */random_descriptors.hpp) echo matcher ;;
     */iib/hessian_detector.hpp | */detector/kernels/* | src/detector/hessian* | */blobs.* | */scale_space.*) echo detector ;;

@@ -54,10 +54,11 @@ Ptr<Feature2D> create(const std::string& name)
     return IIB::create(2.f, 4, IIB::CHANNELS_DEFAULT, mapping, name == "IIB overlap");
 }
 
-typedef perf::TestBaseWithParam<tuple<std::string, int> > IIB_Describe;  // what, points
+typedef perf::TestBaseWithParam<tuple<std::string, int>> IIB_Describe;  // what, points
 
 PERF_TEST_P(IIB_Describe, hd,
-        testing::Combine(testing::Values("ORB", "BEBLID-512", "IIB", "IIB QUARTILE", "IIB SORT", "IIB overlap"),
+        testing::Combine(
+                testing::Values("ORB", "BEBLID-512", "IIB", "IIB QUARTILE", "IIB SORT", "IIB overlap"),
                 testing::Values(1000, 5000)))
 {
     const Mat image = cornerImage(Size(1280, 720));

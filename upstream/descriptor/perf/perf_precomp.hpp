@@ -15,4 +15,4 @@
 namespace opencv_test {
 using namespace cv::iib;
 using namespace perf;
-}
+}  // namespace opencv_test

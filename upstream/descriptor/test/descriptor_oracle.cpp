@@ -30,7 +30,8 @@ namespace {
 //! The nearest pixel of the image.
 int pixel(const Mat& image, int y, int x)
 {
-    return image.at<uchar>(std::min(std::max(y, 0), image.rows - 1), std::min(std::max(x, 0), image.cols - 1));
+    return image.at<uchar>(
+            std::min(std::max(y, 0), image.rows - 1), std::min(std::max(x, 0), image.cols - 1));
 }
 
 //! BORDER_REFLECT_101.
@@ -78,7 +79,8 @@ std::vector<Cell> cellsAt(const IIB& iib, const Mat& grey, const KeyPoint& kp, i
     const double x = kp.pt.x + 0.5 - side / 2, y = kp.pt.y + 0.5 - side / 2;
     const int x0 = edge(x, side, col, n, grey.cols), x1 = edge(x, side, col + 1, n, grey.cols);
     const int y0 = edge(y, side, row, n, grey.rows), y1 = edge(y, side, row + 1, n, grey.rows);
-    std::vector<Cell> cells(valuesOf(iib.getChannels(), grey, 0, 0).size(), Cell{0, (int64)(x1 - x0) * (y1 - y0)});
+    std::vector<Cell> cells(
+            valuesOf(iib.getChannels(), grey, 0, 0).size(), Cell{0, (int64)(x1 - x0) * (y1 - y0)});
     for (int i = y0; i < y1; i++)
         for (int j = x0; j < x1; j++)
         {
@@ -108,7 +110,8 @@ std::vector<bool> mapQuad(int mapping, const std::array<Cell, 4>& q)
         case IIB::MAPPING_MAX: bits.push_back(x[i] == hi); continue;
         case IIB::MAPPING_MIN: bits.push_back(x[i] == lo); continue;
         case IIB::MAPPING_QUARTILE:
-            code = (4 * (x[i] - lo) > hi - lo) + (2 * (x[i] - lo) > hi - lo) + (4 * (x[i] - lo) > 3 * (hi - lo));
+            code = (4 * (x[i] - lo) > hi - lo) + (2 * (x[i] - lo) > hi - lo) +
+                   (4 * (x[i] - lo) > 3 * (hi - lo));
             break;
         default:
             for (int j = 0; j < 4; j++)
@@ -123,7 +126,7 @@ std::vector<bool> mapQuad(int mapping, const std::array<Cell, 4>& q)
 std::vector<bool> levelBits(const IIB& iib, const Mat& grey, const KeyPoint& kp, int level)
 {
     const int n = 1 << level;
-    std::vector<std::vector<Cell> > cells;
+    std::vector<std::vector<Cell>> cells;
     for (int i = 0; i < n * n; i++)
         cells.push_back(cellsAt(iib, grey, kp, n, i / n, i % n));
     const size_t channels = cells[0].size();
@@ -131,7 +134,7 @@ std::vector<bool> levelBits(const IIB& iib, const Mat& grey, const KeyPoint& kp,
     for (int window = 0; window < (iib.getOverlap() ? 4 : 1); window++)
         for (int row = window / 2; row + 1 < n; row += 2)
         {
-            std::vector<std::vector<bool> > quads;  // of the row, channel by channel
+            std::vector<std::vector<bool>> quads;  // of the row, channel by channel
             for (int col = window % 2; col + 1 < n; col += 2)
                 for (size_t c = 0; c < channels; c++)
                 {

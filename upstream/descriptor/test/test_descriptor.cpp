@@ -38,7 +38,8 @@ TEST_P(IIB_Mapping, bits_as_the_equations)
         for (int overlap = 0; overlap < 2; overlap++)
         {
             SCOPED_TRACE(cv::format("G %d overlap %d", granularity, overlap));
-            const Ptr<IIB> iib = IIB::create(2.f, granularity, IIB::CHANNELS_DEFAULT, GetParam(), overlap != 0);
+            const Ptr<IIB> iib =
+                    IIB::create(2.f, granularity, IIB::CHANNELS_DEFAULT, GetParam(), overlap != 0);
             expectOracle(*iib, image, scatter(image.size(), 8, 1.f, 60.f, granularity));
         }
 }
@@ -63,7 +64,8 @@ TEST_P(IIB_Mapping, coarser_descriptor_is_a_prefix)
     }
 }
 
-INSTANTIATE_TEST_CASE_P(/**/, IIB_Mapping, testing::Range((int)IIB::MAPPING_MEAN, (int)IIB::MAPPING_SORT + 1));
+INSTANTIATE_TEST_CASE_P(
+        /**/, IIB_Mapping, testing::Range((int)IIB::MAPPING_MEAN, (int)IIB::MAPPING_SORT + 1));
 
 TEST(IIB_Descriptor, every_set_of_channels)
 {
@@ -91,7 +93,8 @@ TEST(IIB_Descriptor, large_regions_of_support)
 {
     const Mat image = texture(Size(500, 440), CV_8U, 5);
     for (int mapping = IIB::MAPPING_MEAN; mapping <= IIB::MAPPING_SORT; mapping++)
-        expectOracle(*IIB::create(1.f, 3, 15, mapping), image, scatter(image.size(), 4, 100.f, 900.f, mapping));
+        expectOracle(
+                *IIB::create(1.f, 3, 15, mapping), image, scatter(image.size(), 4, 100.f, 900.f, mapping));
 }
 
 TEST(IIB_Descriptor, parts_and_colours_of_an_image)
@@ -133,9 +136,11 @@ TEST(IIB_Descriptor, more_light_changes_few_bits)
     const Mat a = describe(*iib, image, keypoints), b = describe(*iib, lit, keypoints);
     EXPECT_LT(differingBits(a, b), 0.1 * 8 * (double)a.total());
     // where all values have room, none
-    const Ptr<IIB> gradients = IIB::create(2.f, 4, IIB::CHANNEL_GRAD_X | IIB::CHANNEL_GRAD_Y | IIB::CHANNEL_INTENSITY);
+    const Ptr<IIB> gradients =
+            IIB::create(2.f, 4, IIB::CHANNEL_GRAD_X | IIB::CHANNEL_GRAD_Y | IIB::CHANNEL_INTENSITY);
     Mat dark = image / 4, bright = dark * 3 + Scalar(50);
-    EXPECT_EQ(0, differingBits(describe(*gradients, dark, keypoints), describe(*gradients, bright, keypoints)));
+    EXPECT_EQ(
+            0, differingBits(describe(*gradients, dark, keypoints), describe(*gradients, bright, keypoints)));
 }
 
 /* The exact bits, which no build, machine or later version may change: descriptors in files would no longer match. The
@@ -169,10 +174,11 @@ TEST(IIB_Descriptor, golden_bits)
     keypoints.push_back(KeyPoint(160, 120, 300));
     for (const Golden& g : GOLDEN)
     {
-        SCOPED_TRACE(cv::format("%d channels in the image, G %d, channels %d, mapping %d, overlap %d", g.imageChannels,
-                g.granularity, g.channels, g.mapping, g.overlap));
+        SCOPED_TRACE(cv::format("%d channels in the image, G %d, channels %d, mapping %d, overlap %d",
+                g.imageChannels, g.granularity, g.channels, g.mapping, g.overlap));
         const Ptr<IIB> iib = IIB::create(2.f, g.granularity, g.channels, g.mapping, g.overlap);
-        const Mat image = texture(Size(size.width * g.imageChannels, size.height), CV_8U, 1).reshape(g.imageChannels);
+        const Mat image =
+                texture(Size(size.width * g.imageChannels, size.height), CV_8U, 1).reshape(g.imageChannels);
         EXPECT_EQ(g.hash, hashOf(describe(*iib, image, keypoints)));
     }
 }
@@ -232,14 +238,16 @@ TEST(IIB_Descriptor, wrong_input_throws)
 
     const Mat image = texture(Size(64, 64), CV_8U, 1);
     Mat descriptors;
-    for (const KeyPoint& wrong : {KeyPoint(nan, 1, 7), KeyPoint(1, inf, 7), KeyPoint(1, 1, 0), KeyPoint(1, 1, nan)})
+    for (const KeyPoint& wrong :
+            {KeyPoint(nan, 1, 7), KeyPoint(1, inf, 7), KeyPoint(1, 1, 0), KeyPoint(1, 1, nan)})
     {
         std::vector<KeyPoint> keypoints(1, wrong);
         EXPECT_THROW(iib->compute(image, keypoints, descriptors), cv::Exception);
     }
     std::vector<KeyPoint> keypoints(1, KeyPoint(30, 30, 7));
     for (int type : {CV_16UC1, CV_32FC1, CV_8UC2, CV_8SC1})
-        EXPECT_THROW(iib->compute(Mat(64, 64, type, Scalar(1)), keypoints, descriptors), cv::Exception) << type;
+        EXPECT_THROW(iib->compute(Mat(64, 64, type, Scalar(1)), keypoints, descriptors), cv::Exception)
+                << type;
     keypoints[0] = KeyPoint(1500, 1500, 1100);
     EXPECT_THROW(iib->compute(Mat(3000, 3000, CV_8U, Scalar(1)), keypoints, descriptors), cv::Exception);
 }

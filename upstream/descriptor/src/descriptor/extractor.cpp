@@ -25,11 +25,12 @@ namespace iib {
 
 namespace {
 
-constexpr int CHANNELS = 4;       //!< of the image, side by side in sums; those not in use are left out of the bits
+constexpr int CHANNELS =
+        4;  //!< of the image, side by side in sums; those not in use are left out of the bits
 constexpr int MAX_GRANULARITY = 6;
-constexpr int PADDING = 64;       //!< pixels that vectors may read and write past the end of a row
+constexpr int PADDING = 64;  //!< pixels that vectors may read and write past the end of a row
 constexpr int MAX_VALUE = ORIENTATION_STEPS - 1;  //!< of a channel; gradients of 8-bit images reach 1020
-constexpr int MAX_PIXELS = 1 << 22;  //!< of a region: their sum fits 32 bits
+constexpr int MAX_PIXELS = 1 << 22;               //!< of a region: their sum fits 32 bits
 
 // Numbers as kernels/mappings.hpp compares them: of one channel,
 inline int64 least(int64 a, int64 b) { return std::min(a, b); }
@@ -79,10 +80,12 @@ typedef int QuadWeights[4];
 
 /** The bits of every other quad of a row, the first one at its left end.
  @param top, bottom the sums over the cells of the row, and of the row below. */
-typedef void (*MapRow)(const unsigned* top, const unsigned* bottom, const QuadWeights* weights, int quads, QuadBits* bits);
+typedef void (*MapRow)(
+        const unsigned* top, const unsigned* bottom, const QuadWeights* weights, int quads, QuadBits* bits);
 
 template <typename Mapping>
-void mapRow(const unsigned* top, const unsigned* bottom, const QuadWeights* weights, int quads, QuadBits* bits)
+void mapRow(
+        const unsigned* top, const unsigned* bottom, const QuadWeights* weights, int quads, QuadBits* bits)
 {
     for (int q = 0; q < quads; q++, top += 2 * CHANNELS, bottom += 2 * CHANNELS)
     {
@@ -91,8 +94,8 @@ void mapRow(const unsigned* top, const unsigned* bottom, const QuadWeights* weig
         std::fill_n(quad, (int)Mapping::BITS, (uchar)0);
         for (int c = 0; c < CHANNELS; c++)
         {
-            const int64 x[4] = {(int64)top[c] * w[0], (int64)top[CHANNELS + c] * w[1], (int64)bottom[c] * w[2],
-                    (int64)bottom[CHANNELS + c] * w[3]};
+            const int64 x[4] = {(int64)top[c] * w[0], (int64)top[CHANNELS + c] * w[1],
+                    (int64)bottom[c] * w[2], (int64)bottom[CHANNELS + c] * w[3]};
             Mapping::map(x, [&](int bit, bool b) { quad[bit] |= (uchar)(b << c); });
         }
     }
@@ -100,7 +103,8 @@ void mapRow(const unsigned* top, const unsigned* bottom, const QuadWeights* weig
 
 //! The same where four times the largest weighted sum fits an int.
 template <typename Mapping>
-void mapSmallRow(const unsigned* top, const unsigned* bottom, const QuadWeights* weights, int quads, QuadBits* bits)
+void mapSmallRow(
+        const unsigned* top, const unsigned* bottom, const QuadWeights* weights, int quads, QuadBits* bits)
 {
 #if CV_SIMD128
     const auto weighted = [](const unsigned* sums, int weight) {
@@ -136,8 +140,8 @@ QuadMapping quadMapping(int mapping)
     switch (mapping)
     {
     case IIB::MAPPING_MEAN: return quadMapping<MeanMapping>();
-    case IIB::MAPPING_MAX: return quadMapping<ExtremeMapping<true> >();
-    case IIB::MAPPING_MIN: return quadMapping<ExtremeMapping<false> >();
+    case IIB::MAPPING_MAX: return quadMapping<ExtremeMapping<true>>();
+    case IIB::MAPPING_MIN: return quadMapping<ExtremeMapping<false>>();
     case IIB::MAPPING_QUARTILE: return quadMapping<QuartileMapping>();
     default: return quadMapping<SortMapping>();
     }
@@ -154,13 +158,16 @@ struct Parameters
     {
         // written so that NaN fails
         if (!(scaleFactor > 0 && scaleFactor <= FLT_MAX))
-            CV_Error(Error::StsOutOfRange, format("scaleFactor is %g; it must be positive and finite", scaleFactor));
+            CV_Error(Error::StsOutOfRange,
+                    format("scaleFactor is %g; it must be positive and finite", scaleFactor));
         if (granularity < 1 || granularity > MAX_GRANULARITY)
             CV_Error(Error::StsOutOfRange, format("granularity is %d; it must be 1 to 6", granularity));
         if (channels < 1 || channels > IIB::CHANNELS_DEFAULT)
-            CV_Error(Error::StsBadArg, format("channels is %d; it must be a sum of CHANNEL_ values", channels));
+            CV_Error(Error::StsBadArg,
+                    format("channels is %d; it must be a sum of CHANNEL_ values", channels));
         if (mapping < IIB::MAPPING_MEAN || mapping > IIB::MAPPING_SORT)
-            CV_Error(Error::StsBadArg, format("mapping is %d; it must be one of the MAPPING_ values", mapping));
+            CV_Error(Error::StsBadArg,
+                    format("mapping is %d; it must be one of the MAPPING_ values", mapping));
     }
 
     std::vector<int> levelBytes() const
@@ -200,7 +207,8 @@ Mat greyOf(const Mat& image)
 Mat sobelOf(const Mat& grey, int dx)
 {
     Mat padded(grey.rows, grey.cols + PADDING, CV_16S), gradient = padded.colRange(0, grey.cols);
-    Sobel(grey, gradient, CV_16S, dx, 1 - dx, 3, 1, 0, BORDER_REPLICATE | BORDER_ISOLATED);  // not the padding
+    Sobel(grey, gradient, CV_16S, dx, 1 - dx, 3, 1, 0,
+            BORDER_REPLICATE | BORDER_ISOLATED);  // not the padding
     return gradient;
 }
 
@@ -415,7 +423,7 @@ private:
         for (int r = 0; r < finest; r++)
         {
             const unsigned *const top = integral.ptr<unsigned>(yEdges[r] - origin.y),
-                           *const bottom = integral.ptr<unsigned>(yEdges[r + 1] - origin.y);
+                                  *const bottom = integral.ptr<unsigned>(yEdges[r + 1] - origin.y);
             unsigned* out = cell(finest, r, 0);
             size_t at = CHANNELS * (size_t)(xEdges[0] - origin.x);
 #if CV_SIMD128
@@ -478,7 +486,8 @@ private:
                         w[2] = y[1] * x[0];
                         w[3] = y[1] * x[1];
                     }
-                    (small ? mapping.mapSmall : mapping.map)(cell(n, r, dx), cell(n, r + 1, dx), weights, quads, bits);
+                    (small ? mapping.mapSmall : mapping.map)(
+                            cell(n, r, dx), cell(n, r + 1, dx), weights, quads, bits);
                     for (int bit = 0; bit < mapping.bits; bit++)
                         for (int q = 0; q < quads; q++)
                             writer.append(compact[bits[q][bit]], channelsInUse);
@@ -561,16 +570,18 @@ void IIBDescriptorExtractor_Impl::compute(
     {
         const KeyPoint& kp = keypoints[i];
         // written so that NaN fails
-        if (!(std::abs(kp.pt.x) <= FLT_MAX && std::abs(kp.pt.y) <= FLT_MAX && kp.size > 0 && kp.size <= FLT_MAX))
-            CV_Error(Error::StsBadArg, format("keypoint %d is at (%g, %g) with size %g; these must be finite and the "
-                                              "size positive",
-                                               (int)i, kp.pt.x, kp.pt.y, kp.size));
+        if (!(std::abs(kp.pt.x) <= FLT_MAX && std::abs(kp.pt.y) <= FLT_MAX && kp.size > 0 &&
+                    kp.size <= FLT_MAX))
+            CV_Error(Error::StsBadArg,
+                    format("keypoint %d is at (%g, %g) with size %g; these must be finite and the "
+                           "size positive",
+                            (int)i, kp.pt.x, kp.pt.y, kp.size));
         regions.push_back(Region(parameters, kp, image.size()));
         const Rect pixels = regions.back().pixels();
         if ((double)pixels.width * pixels.height > MAX_PIXELS)
             CV_Error(Error::StsOutOfRange,
-                    format("keypoint %d has a region of %d x %d pixels; reduce the image", (int)i, pixels.width,
-                            pixels.height));
+                    format("keypoint %d has a region of %d x %d pixels; reduce the image", (int)i,
+                            pixels.width, pixels.height));
         // not area | pixels, which takes a rectangle without pixels for none
         const Point first(std::min(area.x, pixels.x), std::min(area.y, pixels.y)),
                 end(std::max(area.br().x, pixels.br().x), std::max(area.br().y, pixels.br().y));
