@@ -15,62 +15,21 @@
 
 #include <numeric>
 
-#include "opencv2/core/hal/intrin.hpp"
 #include "opencv2/core/utils/trace.hpp"
 #include "opencv2/imgproc.hpp"
 #include "kernels/orientation.hpp"
+#include "quad_numbers.hpp"
 
 namespace cv {
 namespace iib {
 
 namespace {
 
-constexpr int CHANNELS =
-        4;  //!< of the image, side by side in sums; those not in use are left out of the bits
+constexpr int CHANNELS = 4;  //!< of the image; those not in use are computed, but have no bits
 constexpr int MAX_GRANULARITY = 6;
 constexpr int PADDING = 64;  //!< pixels that vectors may read and write past the end of a row
 constexpr int MAX_VALUE = ORIENTATION_STEPS - 1;  //!< of a channel; gradients of 8-bit images reach 1020
 constexpr int MAX_PIXELS = 1 << 22;               //!< of a region: their sum fits 32 bits
-
-// Numbers as kernels/mappings.hpp compares them: of one channel,
-inline int64 least(int64 a, int64 b) { return std::min(a, b); }
-inline int64 greatest(int64 a, int64 b) { return std::max(a, b); }
-inline int64 fourTimes(int64 v) { return 4 * v; }
-inline int64 quarter(int64 v) { return v / 4; }
-
-#if CV_SIMD128
-//! or of all four, where 32 bits are enough.
-struct Lanes
-{
-    v_int32x4 v;
-    Lanes(const v_int32x4& vector) : v(vector) {}
-};
-
-inline Lanes operator+(const Lanes& a, const Lanes& b) { return v_add(a.v, b.v); }
-inline Lanes operator-(const Lanes& a, const Lanes& b) { return v_sub(a.v, b.v); }
-inline Lanes operator>(const Lanes& a, const Lanes& b) { return v_gt(a.v, b.v); }
-inline Lanes operator>=(const Lanes& a, const Lanes& b) { return v_ge(a.v, b.v); }
-inline Lanes operator==(const Lanes& a, const Lanes& b) { return v_eq(a.v, b.v); }
-inline Lanes operator&(const Lanes& a, const Lanes& b) { return v_and(a.v, b.v); }
-inline Lanes operator|(const Lanes& a, const Lanes& b) { return v_or(a.v, b.v); }
-inline Lanes operator^(const Lanes& a, const Lanes& b) { return v_xor(a.v, b.v); }
-inline Lanes least(const Lanes& a, const Lanes& b) { return v_min(a.v, b.v); }
-inline Lanes greatest(const Lanes& a, const Lanes& b) { return v_max(a.v, b.v); }
-inline Lanes fourTimes(const Lanes& a) { return v_shl<2>(a.v); }
-inline Lanes quarter(const Lanes& a) { return v_shr<2>(a.v); }
-#endif
-
-}  // namespace
-
-}  // namespace iib
-}  // namespace cv
-
-#include "kernels/mappings.hpp"
-
-namespace cv {
-namespace iib {
-
-namespace {
 
 //! The bits of a quad: a byte for each bit of the mapping, with the bit of channel c at its place c.
 typedef uchar QuadBits[8];
