@@ -171,6 +171,7 @@ Mat sobelOf(const Mat& grey, int dx)
     return gradient;
 }
 
+/* Whether a compiler fuses products with sums changes the result of no gradient of 8-bit images. */
 #if CV_SIMD && CV_SIMD_64F  // not ARMv7, which divides and rounds in another way
 inline v_int32 octantSteps(const v_int32& shortSide, const v_int32& longSide)
 {
