@@ -55,6 +55,7 @@ refused scripts/train.sh --out=selection.yml
 refused scripts/train.sh --bits=few .
 refused scripts/train.sh --bits=-3 .
 refused scripts/upstream.sh no-such-folder
+refused scripts/upstream.sh --sizes
 refused scripts/wheel.sh no-such-python
 refused scripts/windows.sh unknown
 refused scripts/helpers/emulated.sh s390x
