@@ -418,12 +418,12 @@ private:
     }
 
     //! Factors that make the sums over cells i and i + 1 comparable along an axis, without a division.
-    void weightsOf(const std::vector<int>& edges, int n, int i, int weights[2]) const
+    void weightsOf(const std::vector<int>& edges, int n, int i, int factors[2]) const
     {
         const int step = finest / n, begin = edges[i * step], middle = edges[(i + 1) * step],
                   end = edges[(i + 2) * step];
-        weights[0] = middle - begin == end - middle ? 1 : end - middle;
-        weights[1] = middle - begin == end - middle ? 1 : middle - begin;
+        factors[0] = middle - begin == end - middle ? 1 : end - middle;
+        factors[1] = middle - begin == end - middle ? 1 : middle - begin;
     }
 
     //! @param longest bound of the sides of cells.
