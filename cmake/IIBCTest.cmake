@@ -53,6 +53,8 @@ add_test(NAME perf-smoke-geometry COMMAND opencv_perf_iib_geometry --perf_min_sa
 if(UNIX)
   add_test(NAME scripts COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/scripts_test.sh")
   add_test(NAME nightly COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/nightly_test.sh")
+  add_test(NAME upstream COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/upstream_test.sh")
+  set_tests_properties(upstream PROPERTIES SKIP_RETURN_CODE 77)
 endif()
 set(compilers "${CMAKE_CXX_COMPILER}")
 foreach(name g++ clang++)

@@ -7,6 +7,7 @@
 #include "images.hpp"
 #include "detector/hessian_oracle.hpp"
 #include "normalization/normalization_oracle.hpp"
+#include "normalization/seen_image.hpp"
 
 #include <cmath>
 

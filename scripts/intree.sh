@@ -5,7 +5,7 @@
 # --short: what scripts/test.sh has not shown of the same sources: that they build here, give the same bits (golden tests)
 # and the API of C++ and Python; OpenCV is built with little optimization, for AVX512_ICL alone, for which it has no code
 # itself.
-# --modules: the module iib of another folder, alone, and its tests of C++ alone.
+# --modules: the module iib of another folder, alone, its tests of C++, and a smoke run of the speed of the descriptor.
 # debian: the distribution's source of its OpenCV. contrib: the newest OpenCV 4 with opencv_contrib's xfeatures2d,
 # from the source distribution of opencv-contrib-python; contrib-5: the newest OpenCV 5 in the same way.
 # JOBS limits the parallel jobs. The last line tells the build's folder.
@@ -97,6 +97,7 @@ cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
 if [ -n "$modules" ]; then
     cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib opencv_perf_iib
     "$build/bin/opencv_test_iib" "--gtest_filter=*${short:+-*upper_halves*}"  # as above
+    "$build/bin/opencv_perf_iib" --perf_min_samples=1 --perf_force_samples=1 --gtest_filter='IIB_Describe_*'
     exit 0
 fi
 cmake --build "$build" --parallel "${JOBS:-$jobs}" --target opencv_test_iib opencv_test_iib_index opencv_test_iib_geometry opencv_perf_iib opencv_python3

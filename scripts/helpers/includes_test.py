@@ -64,7 +64,7 @@ def mistakes(module):
         unit = name.with_suffix('')
         units.setdefault(unit, set()).update({path.with_suffix('') for path in included} - {unit})
         if INTRINSICS.search(text) and name.name != 'vectors.simd.hpp':
-            yield '%s has raw intrinsics; give them a name in common/vectors.simd.hpp' % name
+            yield '%s has raw intrinsics; give them a name in a vectors.simd.hpp' % name
     # Units that include no other one still there are taken away, until none is left: what remains are circles.
     while True:
         free = {unit for unit, included in units.items() if not included & units.keys()}

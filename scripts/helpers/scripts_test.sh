@@ -45,6 +45,7 @@ refused scripts/test.sh --sanitize=nothing
 refused scripts/test.sh --all unknown
 refused scripts/train.sh
 refused scripts/upstream.sh no-such-folder
+refused scripts/upstream.sh --sizes
 refused scripts/wheel.sh no-such-python
 refused scripts/windows.sh unknown
 refused scripts/helpers/emulated.sh s390x

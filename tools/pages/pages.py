@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""Writes what shows figures, of the results in doc: the tables of README.md and of pages in doc, doc/results/index.html,
+"""Writes what shows figures, of the results in doc: the tables of README.md and of pages in doc and upstream, doc/results/index.html,
 doc/localization/index.html, charts and the paper's drawings. With arguments, the page of other results alone.
 
 Needs python3-pandas, python3-jinja2 and python3-matplotlib.
@@ -54,7 +54,7 @@ def markdown():
     """Pages with tables, filled anew."""
     pages, used = {}, set()
     figures = {'%s.%s' % (group, name): value for group, make in tables.FIGURES.items() for name, value in make().items()}
-    for page in [ROOT / 'README.md', *sorted((ROOT / 'doc').rglob('*.md'))]:
+    for page in [ROOT / 'README.md', *sorted((ROOT / 'doc').rglob('*.md')), *sorted((ROOT / 'upstream').glob('*.md'))]:
         def fill(match):
             used.add(match[2])
             return match[1] + tables.ALL[match[2]]() + '\n'

@@ -404,11 +404,22 @@ def night():
                  [['`%s`' % row['step'], *(row[key] for key in ('counted', 'minutes', 'commit', 'started', 'result'))] for row in rows('night.csv')])
 
 
+def first_patch():
+    """The paper's descriptor beside those that OpenCV has, under changed illumination."""
+    found, ms = summaries.by(rows('fixed_points.csv'), 'place', 'configuration'), summaries.by(summaries.read(ROOT / 'upstream/speed.csv'), 'descriptor')
+    lines = []
+    for name in ('IIB', 'IIB overlap', 'IIB quartile', 'IIB g3', 'BEBLID-512', 'BRIEF-512', 'LATCH-512', 'ORB', 'SIFT'):
+        row = found['light', name]
+        lines.append((name.replace('g3', 'granularity 3'), row['bytes'], *('%.3f' % float(row[key]) for key in ('precision', 'recall')),
+                      '%.2f to %.2f' % (float(row['low']), float(row['high'])), ms[name]['ms'] if name in ms else ''))
+    return table(('descriptor', 'bytes', 'precision', 'recall', 'interval of recall', 'ms for 1000 points'), lines)
+
+
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, poses, presets, views, views_affine, photographs, photographs_of_many, describing, chains, same_points, matching, step_by_step,
     matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time,
-    detected_points, uncertainty, night)}
+    detected_points, uncertainty, night, first_patch)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
 FIGURES = {'learned': learned_figures, 'poses': pose_figures, 'photographs': photograph_figures, 'views': view_figures, 'sure': sure_figures, 'speed': speed_figures}

@@ -20,31 +20,4 @@ cv::Mat normalizeByDefinition(const cv::Mat& grey, double sigma);
 
 }  // namespace oracle
 
-namespace opencv_test {
-
-//! Keeps the image that it is given and finds nothing.
-class CaptureDetector : public Feature2D
-{
-public:
-    using Feature2D::detect;
-    void detect(InputArray image, std::vector<KeyPoint>& keypoints, InputArray) CV_OVERRIDE
-    {
-        image.copyTo(seen);
-        keypoints.clear();
-    }
-
-    Mat seen;
-};
-
-//! What a detector in a NormalizedDetector sees.
-inline Mat normalized(InputArray image, float sigma)
-{
-    const Ptr<CaptureDetector> capture = makePtr<CaptureDetector>();
-    std::vector<KeyPoint> keypoints;
-    NormalizedDetector::create(capture, sigma)->detect(image, keypoints);
-    return capture->seen;
-}
-
-}  // namespace opencv_test
-
 #endif

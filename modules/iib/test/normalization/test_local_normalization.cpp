@@ -4,6 +4,7 @@
 
 #include "../support/test_images.hpp"
 #include "normalization_oracle.hpp"
+#include "seen_image.hpp"
 
 namespace opencv_test {
 namespace {

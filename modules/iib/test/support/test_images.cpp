@@ -4,52 +4,9 @@
 
 #include "test_images.hpp"
 
-#include "oracle_pixels.hpp"
-
 #include <fstream>
 
 namespace opencv_test {
-
-int Integers::below(int end)
-{
-    uint64 z = state += CV_BIG_UINT(0x9e3779b97f4a7c15);
-    z = (z ^ z >> 30) * CV_BIG_UINT(0xbf58476d1ce4e5b9);
-    z = (z ^ z >> 27) * CV_BIG_UINT(0x94d049bb133111eb);
-    return (int)((z ^ z >> 31) % (unsigned)end);
-}
-
-//! Binomial weights along rows or columns; the border is repeated.
-static Mat_<int> blurred(const Mat_<int>& m, Point direction)
-{
-    static const int weights[] = {1, 4, 6, 4, 1};
-    Mat_<int> result(m.size());
-    for (int y = 0; y < m.rows; y++)
-        for (int x = 0; x < m.cols; x++)
-        {
-            int sum = 8;
-            for (int i = -2; i <= 2; i++)
-                sum += weights[i + 2] * oracle::pixel(m, y + i * direction.y, x + i * direction.x);
-            result(y, x) = sum / 16;
-        }
-    return result;
-}
-
-Mat texture(Size size, int depth, int seed)
-{
-    CV_Assert(depth == CV_8U || depth == CV_16U);
-    Integers integers(seed);
-    Mat_<int> m(size);
-    for (int& pixel : m)
-        pixel = integers.below(depth == CV_8U ? 256 : 65536);
-    if (size.width > 16 && size.height > 16)
-    {
-        m = blurred(blurred(m, Point(1, 0)), Point(0, 1));
-        m(Rect(size.width / 4, size.height / 4, size.width / 3, size.height / 3)) = 77;
-    }
-    Mat result;
-    m.convertTo(result, depth);
-    return result;
-}
 
 static Point pointIn(Size size, Integers& integers)
 {
@@ -126,23 +83,6 @@ Mat relit(const Mat& image, int seed)
     return result;
 }
 
-std::vector<KeyPoint> scatter(Size size, int count, float smallest, float largest, int seed)
-{
-    Integers integers(seed);
-    std::vector<KeyPoint> keypoints;
-    for (int i = 0; i < count; i++)
-    {
-        // a fourth of them on whole pixels
-        const int part = i % 4 ? 4 : 1;
-        const float x = integers.between(-size.width * part / 5, size.width * part * 6 / 5) / (float)part;
-        const float y = integers.between(-size.height * part / 5, size.height * part * 6 / 5) / (float)part;
-        const float angle = i % 5 ? (float)integers.below(360) : -1.f;
-        keypoints.push_back(
-                KeyPoint(x, y, integers.between((int)(smallest * 8), (int)(largest * 8)) / 8.f, angle));
-    }
-    return keypoints;
-}
-
 Mat_<int> randomSelection(int count, const std::vector<int>& ends, const std::vector<int>& masksOfChannels)
 {
     RNG rng(count);
@@ -160,27 +100,6 @@ Mat_<int> randomSelection(int count, const std::vector<int>& ends, const std::ve
         selection.push_back(Mat_<int>({quad[0], quad[1], quad[2], quad[3], mask}).reshape(1, 1));
     }
     return selection;
-}
-
-int differingBits(const Mat& a, const Mat& b)
-{
-    EXPECT_EQ(a.size(), b.size());
-    EXPECT_EQ(a.type(), b.type());
-    return a.size() == b.size() && !a.empty() ? cvRound(cvtest::norm(a, b, NORM_HAMMING)) : -1;
-}
-
-void expectSameKeyPoints(const std::vector<KeyPoint>& expected, const std::vector<KeyPoint>& actual)
-{
-    ASSERT_EQ(expected.size(), actual.size());
-    for (size_t i = 0; i < expected.size(); i++)
-    {
-        EXPECT_EQ(expected[i].pt, actual[i].pt);
-        EXPECT_EQ(expected[i].size, actual[i].size);
-        EXPECT_EQ(expected[i].angle, actual[i].angle);
-        EXPECT_EQ(expected[i].response, actual[i].response);
-        EXPECT_EQ(expected[i].octave, actual[i].octave);
-        EXPECT_EQ(expected[i].class_id, actual[i].class_id);
-    }
 }
 
 int countCorrect(const std::vector<DMatch>& matches, const std::vector<KeyPoint>& queries,
@@ -206,15 +125,6 @@ RotatedPair::RotatedPair(double degrees, double zoom) : homography(Matx33d::eye(
     images[1] = relit(rotated, 8);
     for (int i = 0; i < 2; i++)
         ORB::create(600)->detect(images[i], keypoints[i]);
-}
-
-uint64 hashOf(const Mat& m)
-{
-    uint64 hash = CV_BIG_UINT(0xcbf29ce484222325);
-    for (int y = 0; y < m.rows; y++)
-        for (size_t i = 0; i < m.cols * m.elemSize(); i++)
-            hash = (hash ^ m.ptr(y)[i]) * CV_BIG_UINT(0x100000001b3);
-    return hash;
 }
 
 int RotatedPair::correct(const std::vector<DMatch>& matches) const

@@ -4,25 +4,9 @@
 
 #pragma once
 
-#include "../test_precomp.hpp"
+#include "textures.hpp"
 
 namespace opencv_test {
-
-//! Pseudorandom integers, the same everywhere (SplitMix64).
-class Integers
-{
-public:
-    explicit Integers(uint64 seed) : state(seed) {}
-    //! 0 <= result < end
-    int below(int end);
-    int between(int begin, int end) { return begin + below(end - begin); }
-
-private:
-    uint64 state;
-};
-
-//! Blurred noise, CV_8U or CV_16U: gradients of all sizes, flat places too. Made of integers alone.
-Mat texture(Size size, int depth, int seed);
 
 //! Polygons and ellipses in front of each other, CV_8U.
 Mat scene(Size size, int seed);
@@ -36,21 +20,10 @@ Matx33d readHomography(const String& file);
 //! The scene by another light: dimmed, from the side, with the camera's curve and noise.
 Mat relit(const Mat& image, int seed);
 
-//! Keypoints in and around an image, of all sizes and directions, some of them -1. Quarters of pixels, whole degrees.
-std::vector<KeyPoint> scatter(Size size, int count, float smallest, float largest, int seed);
-
 //! For setSelection(): up to `count` quads of levels 1 to 5, each with some of the bits that its channel may have
 //! there.
 //! @param ends of their rows and columns on each level
 Mat_<int> randomSelection(int count, const std::vector<int>& ends, const std::vector<int>& masksOfChannels);
-
-//! Number of bits that differ; fails if the sizes or types do.
-int differingBits(const Mat& a, const Mat& b);
-
-void expectSameKeyPoints(const std::vector<KeyPoint>& expected, const std::vector<KeyPoint>& actual);
-
-//! FNV-1a of the bytes of all rows.
-uint64 hashOf(const Mat& m);
 
 //! How many matches lead at most 3 pixels away from where a homography takes their point.
 int countCorrect(const std::vector<DMatch>& matches, const std::vector<KeyPoint>& queries,

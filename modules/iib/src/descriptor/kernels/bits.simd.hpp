@@ -4,9 +4,9 @@
 
 #pragma once
 
-#include "../../common/vectors.simd.hpp"
 #include "kernels.hpp"
-#include "mappings.hpp"
+#include "more_mappings.hpp"
+#include "vectors.simd.hpp"
 
 namespace cv {
 namespace iib {

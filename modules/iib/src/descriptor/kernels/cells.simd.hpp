@@ -4,8 +4,8 @@
 
 #pragma once
 
-#include "../../common/vectors.simd.hpp"
 #include "kernels.hpp"
+#include "vectors.simd.hpp"
 
 namespace cv {
 namespace iib {

@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include "orientation.hpp"
 #include "quads.hpp"
 
 namespace cv {
@@ -14,17 +15,6 @@ namespace iib {
 
 constexpr int MAPPINGS = IIB::MAPPING_PAIRWISE + 1;  //!< of quads
 constexpr int NARROW_CELL = 4;  //!< pixels; sums down the columns add up wider ones slowly
-
-/* Orientation is an integer, so that sums and decisions are exact: ORIENTATION_STEPS a turn, about the
- range of |gx| of 8-bit images. */
-constexpr int ORIENTATION_STEPS = 1024;
-
-/* Minimax polynomial a t + b t^3 + c t^5 of ORIENTATION_STEPS / (2 pi) * atan(t) on [0, 1]; its error is
- 0.1 step (0.035 degrees). Scalar and vector code evaluate it in the same order without fused operations,
- so both round alike. Found by iteratively reweighted least squares on 20001 points. */
-static const float ATAN_A = 162.218109f;
-static const float ATAN_B = -47.0491257f;
-static const float ATAN_C = 12.9301834f;
 
 /** What a reader sees of the last rows of GROUP_CHANNELS channels, in a ring. Row (y - origin.y) % count holds the
  pixels of row y of the image, side by side; or the sums over its rows [origin.y, y): those of an integral image, side

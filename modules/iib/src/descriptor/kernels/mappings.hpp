@@ -83,32 +83,5 @@ private:
     }
 };
 
-//! Left > right, top > bottom, main > other diagonal.
-struct HaarMapping
-{
-    static constexpr int BITS = 3;
-
-    template <typename V, typename Put> static void map(const V x[4], const Put& put)
-    {
-        put(0, x[0] + x[2] > x[1] + x[3]);
-        put(1, x[0] + x[1] > x[2] + x[3]);
-        put(2, x[0] + x[3] > x[1] + x[2]);
-    }
-};
-
-//! Each cell > the next, around the quad.
-struct PairwiseMapping
-{
-    static constexpr int BITS = 4;
-
-    template <typename V, typename Put> static void map(const V x[4], const Put& put)
-    {
-        put(0, x[0] > x[1]);
-        put(1, x[1] > x[3]);
-        put(2, x[3] > x[2]);
-        put(3, x[2] > x[0]);
-    }
-};
-
 }  // namespace iib
 }  // namespace cv

@@ -1,0 +1,34 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#pragma once
+
+#include "../test_precomp.hpp"
+
+namespace opencv_test {
+
+//! Keeps the image that it is given and finds nothing.
+class CaptureDetector : public Feature2D
+{
+public:
+    using Feature2D::detect;
+    void detect(InputArray image, std::vector<KeyPoint>& keypoints, InputArray) CV_OVERRIDE
+    {
+        image.copyTo(seen);
+        keypoints.clear();
+    }
+
+    Mat seen;
+};
+
+//! What a detector in a NormalizedDetector sees.
+inline Mat normalized(InputArray image, float sigma)
+{
+    const Ptr<CaptureDetector> capture = makePtr<CaptureDetector>();
+    std::vector<KeyPoint> keypoints;
+    NormalizedDetector::create(capture, sigma)->detect(image, keypoints);
+    return capture->seen;
+}
+
+}  // namespace opencv_test

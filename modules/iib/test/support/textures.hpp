@@ -1,0 +1,40 @@
+// This file is part of OpenCV project.
+// It is subject to the license terms in the LICENSE file found in the top-level directory
+// of this distribution and at http://opencv.org/license.html.
+
+#pragma once
+
+#include "../test_precomp.hpp"
+
+namespace opencv_test {
+
+// Pictures and keypoints that are the same on every machine: made of integers alone.
+
+//! Pseudorandom integers, the same everywhere (SplitMix64).
+class Integers
+{
+public:
+    explicit Integers(uint64 seed) : state(seed) {}
+    //! 0 <= result < end
+    int below(int end);
+    int between(int begin, int end) { return begin + below(end - begin); }
+
+private:
+    uint64 state;
+};
+
+//! Blurred noise, CV_8U or CV_16U: gradients of all sizes, flat places too. Made of integers alone.
+Mat texture(Size size, int depth, int seed);
+
+//! Keypoints in and around an image, of all sizes and directions, some of them -1. Quarters of pixels, whole degrees.
+std::vector<KeyPoint> scatter(Size size, int count, float smallest, float largest, int seed);
+
+//! Number of bits that differ; fails if the sizes or types do.
+int differingBits(const Mat& a, const Mat& b);
+
+void expectSameKeyPoints(const std::vector<KeyPoint>& expected, const std::vector<KeyPoint>& actual);
+
+//! FNV-1a of the bytes of all rows.
+uint64 hashOf(const Mat& m);
+
+}  // namespace opencv_test
