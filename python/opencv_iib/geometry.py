@@ -52,12 +52,13 @@ class _Alignment(NamedTuple):
 class Alignment(_Alignment):
     """What :func:`alignImages` finds; `reason` is ''."""
 
-    __slots__ = ()
     found: Literal[True]
     transform: NDArray[np.float64]  #: 3 x 3: from pixels of the image to pixels of the reference
     error: NDArray[np.float64]  #: 4 x 1: standard deviations of the places of the image's corners, pixels
     matches: NDArray[np.float32]  #: M x 4: those that agree, x and y in the reference, x and y in the image
     reason = ''
+    simplest: AlignmentModel  #: that is true of the images; of AUTO the one of the transform
+    note: str  #: a sentence, such as of a part that moved otherwise; mostly ''
 
 
 class NoAlignment(_Alignment):
@@ -108,7 +109,7 @@ def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentMo
     ``cv2.warpPerspective(image, transform, (width, height))`` has the image as the reference's camera would see it.
 
     :param reference: as IIBDescriptorExtractor takes it; so is `image`.
-    :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors.
+    :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors, and AUTO chooses it.
     :param referenceMask: H x W uint8, 0 where no points are to be found in the reference; so is `mask` of the image.
     :return: a tuple (found, transform, error, matches): a NoAlignment where the matches are not more than chance, where
         they span a small part of what both show, as a logo does, or where the images differ by more than the model.
@@ -138,9 +139,11 @@ class ImageAligner:
 
         :param mask: of the image.
         :raises opencv_iib.error: for an image of another type, and a mask of another size or type."""
-        alignment, reason = self._core.align(as_image(image), as_mask(mask))
+        alignment, reason, simplest, note = self._core.align(as_image(image), as_mask(mask))
         if alignment[0]:
-            return Alignment(*alignment)
+            found = Alignment(*alignment)
+            found.simplest, found.note = AlignmentModel(simplest), note
+            return found
         none = NoAlignment(*alignment)
         none.reason = reason
         return none
