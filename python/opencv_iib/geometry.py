@@ -47,6 +47,8 @@ class Alignment(_Alignment):
     """
 
     reason: str = ''  #: why it is not found, a sentence
+    simplest: AlignmentModel  #: if found: that is true of the images; of AUTO the one of the transform
+    note: str = ''  #: a sentence, such as of a part that moved otherwise; mostly ''
 
 
 def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:
@@ -85,7 +87,7 @@ def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentMo
     ``cv2.warpPerspective(image, transform, (width, height))`` has the image as the reference's camera would see it.
 
     :param reference: as IIBDescriptorExtractor takes it; so is `image`.
-    :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors.
+    :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors, and AUTO chooses it.
     :param referenceMask: H x W uint8, 0 where no points are to be found in the reference; so is `mask` of the image.
     :return: a tuple (found, transform, error, matches), with its `reason`. Not found: the matches are not more than chance, they span a small
         part of what both show, as a logo does, or the images differ by more than the model.
@@ -115,9 +117,11 @@ class ImageAligner:
 
         :param mask: of the image.
         :raises opencv_iib.error: for an image of another type, and a mask of another size or type."""
-        alignment, reason = self._core.align(as_image(image), as_mask(mask))
+        alignment, reason, simplest, note = self._core.align(as_image(image), as_mask(mask))
         result = Alignment(*alignment)
-        result.reason = reason
+        result.reason, result.note = reason, note
+        if result.found:
+            result.simplest = AlignmentModel(simplest)
         return result
 
 

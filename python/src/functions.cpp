@@ -68,14 +68,15 @@ auto findRelativePose(const cv::Mat& points1, const cv::Mat& points2, const cv::
 
 typedef Held<cv::iib::ImageAligner> Aligner;
 
-// Whether they show the same, transform, deviations of the corners, matches that agree; and why not.
+// Whether they show the same, transform, deviations of the corners, matches that agree; why not; the simplest model, and a note.
 auto align(const Aligner& aligner, const cv::Mat& image, const cv::Mat& mask)
 {
     cv::Mat transform, error, matches;
-    cv::String reason;
-    const bool found = aligner->align(image, transform, error, matches, &reason, mask);
+    cv::String reason, note;
+    int simplest = 0;
+    const bool found = aligner->align(image, transform, error, matches, &reason, mask, &simplest, &note);
     return std::make_tuple(std::make_tuple(found, onlyIf(found, transform), onlyIf(found, error), matches),
-            std::string(reason));
+            std::string(reason), simplest, std::string(note));
 }
 
 typedef Held<cv::iib::ViewMatcher> ViewMatcher;

@@ -56,6 +56,10 @@ class Alignment(unittest.TestCase):
         self.assertEqual((error.shape, matches.shape[1]), ((4, 1), 4))
         self.assertLess(error.max(), .2)
         np.testing.assert_allclose(matches[:, 2:] + [32, 16], matches[:, :2], atol=2)
+        chosen = opencv_iib.alignImages(picture, picture[16:, 32:] // 2 + 40, opencv_iib.AlignmentModel.AUTO)
+        np.testing.assert_allclose(chosen.transform, transform, atol=1e-9)
+        self.assertEqual((chosen.simplest, chosen.note), (opencv_iib.AlignmentModel.TRANSLATION, ''))
+        self.assertIn('TRANSLATION', opencv_iib.alignImages(picture, picture[16:, 32:] // 2 + 40).note)
 
     def test_other_pictures(self):
         alignment = opencv_iib.alignImages(*(texture(640, 480, seed=seed)[290:] for seed in (1, 2)))  # below their rectangle

@@ -76,10 +76,11 @@ Matx<double, N, N> limited(const Matx<double, N, N>& covariance, double largest,
 
 /** Covariance of the numbers of a step from a fitted model to the true one.
 @param parts of the image, of each match.
-@param largest deviation of a number, in its unit: what nothing tells has it. */
+@param largest deviation of a number, in its unit: what nothing tells has it.
+@param shared part of a match's variance that the matches of a part of the image have in common. */
 template <class Problem>
-Square<typename Problem::Step> covarianceOf(
-        const Problem& problem, const Fit<Problem>& fit, const std::vector<int>& parts, double largest)
+Square<typename Problem::Step> covarianceOf(const Problem& problem, const Fit<Problem>& fit,
+        const std::vector<int>& parts, double largest, double shared = SHARED)
 {
     typedef typename Problem::Step Step;
     const double leastBend = .2;  // the noise is far over the scale
@@ -124,7 +125,7 @@ Square<typename Problem::Step> covarianceOf(
     {
         mirror(part.hessian);
         hessian += part.hessian;
-        addProduct(part.along, SHARED * noise2, ofGradient);
+        addProduct(part.along, shared * noise2, ofGradient);
     }
     mirror(ofGradient);
     hessian -= problem.noiseInDerivatives(fit.model, rows, noise2) * bend;

@@ -133,6 +133,21 @@ std::vector<double> Verdict::sumsOfPlaces(const std::vector<double>& values) con
     return sums;
 }
 
+Verdict::Marks Verdict::elsewhere(const Marks& matches, const Marks& others) const
+{
+    Marks result = matches;
+    for (const std::vector<int>& cells : cells_)
+    {
+        std::bitset<(CELLS + 1) * (CELLS + 1)> taken;
+        for (size_t i = 0; i < others.size(); i++)
+            if (others[i])
+                taken.set(cells[i]);
+        for (size_t i = 0; i < result.size(); i++)
+            result[i] = result[i] && !taken[cells[i]];
+    }
+    return result;
+}
+
 int Verdict::places(const Marks& matches) const { return std::min(places(matches, 0), places(matches, 1)); }
 
 double Verdict::chance(Distance distance, double limit, const std::vector<double>& wrong) const

@@ -46,6 +46,9 @@ public:
     //! Of a number of each match: the sums over places of the first image that have any.
     std::vector<double> sumsOfPlaces(const std::vector<double>& values) const;
 
+    //! Matches in places in which none of the others is, in either image.
+    Marks elsewhere(const Marks& matches, const Marks& others) const;
+
     //! Number of places of the matches, in the image where they have fewer.
     int places(const Marks& matches) const;
 
