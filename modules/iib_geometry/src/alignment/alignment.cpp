@@ -68,7 +68,7 @@ bool isCertain(const Aligned& aligned, const Verdict& verdict, int tried)
     for (double limit : {.5, 1., 2., 4.})
         limits.push_back(limit * aligned.limit);
     return verdict.logFalseAlarms(aligned.fit.squared,
-                   errorsOfWrongMatches(aligned.problem, aligned.fit.model), Verdict::FROM_POINT,
+                   errorsOfWrongMatches(aligned.problem, aligned.fit.model, verdict), Verdict::FROM_POINT,
                    aligned.problem.sampleSize(), limits) +
                    std::log10((double)tried) <
            Verdict::CERTAIN;
@@ -125,7 +125,7 @@ under the scale of the richer model has it. */
 bool isBetter(const Aligned& richer, const Aligned& aligned)
 {
     const auto loss = [&](const Aligned& a) {
-        return a.problem.loss(a.fit.model, richer.limit / 3, std::numeric_limits<double>::max());
+        return a.problem.loss(a.fit.model, Loss{richer.limit / 3}, std::numeric_limits<double>::max());
     };
     if (richer.fit.squared.empty())
         return false;

@@ -197,9 +197,9 @@ private:
             pixels.at<Point2d>(i) = matches_[size_t(i)].pixel;
         std::vector<double> squared;
         matches.squaredErrors(pose_, squared);
-        return Verdict(pixels, pixels)
-                       .logFalseAlarms(squared, errorsOfWrongMatches(matches, pose_), Verdict::FROM_POINT,
-                               sampleSize, {limit_}) < Verdict::CERTAIN;
+        const Verdict verdict(pixels, pixels);
+        return verdict.logFalseAlarms(squared, errorsOfWrongMatches(matches, pose_, verdict),
+                       Verdict::FROM_POINT, sampleSize, {limit_}) < Verdict::CERTAIN;
     }
 
     double depth() const { return medianDistance(inCamera(pointsOf(inliers_), pose_)); }

@@ -75,6 +75,20 @@ EpipolarProblem EpipolarProblem::mixed(const std::vector<int>& order) const
     return other;
 }
 
+EpipolarProblem EpipolarProblem::subset(const std::vector<bool>& marks) const
+{
+    EpipolarProblem chosen = *this;
+    chosen.first_.clear();
+    chosen.second_.clear();
+    for (size_t i = 0; i < marks.size(); i++)
+        if (marks[i])
+        {
+            chosen.first_.push_back(first_[i]);
+            chosen.second_.push_back(second_[i]);
+        }
+    return chosen;
+}
+
 double EpipolarProblem::squaredError(const Matx33d& E, int i) const
 {
     return squaredErrorOf(E, weights_, first_[i], second_[i]);
@@ -108,12 +122,12 @@ void EpipolarProblem::propose(const std::vector<int>& sample, std::vector<Relati
     }
 }
 
-double EpipolarProblem::loss(const RelativePose& pose, double scale, double limit) const
+double EpipolarProblem::loss(const RelativePose& pose, const Loss& by, double limit) const
 {
     const Matx33d essential = essentialOf(pose);
     const Vec4d weights = weights_;
     const Point2d *const first = first_.data(), *const second = second_.data();
-    const double perScale2 = 1 / square(scale);
+    const double perScale2 = 1 / square(by.scale);
     double loss = 0;
     for (int begin = 0; begin < size() && loss <= limit; begin += STRIDE)
     {
@@ -122,7 +136,7 @@ double EpipolarProblem::loss(const RelativePose& pose, double scale, double limi
         for (int i = 0; i < count; i++)
             shares[i] = squaredErrorOf(essential, weights, first[begin + i], second[begin + i]) * perScale2;
         for (int i = 0; i < count; i++)
-            product *= 1 + std::min(shares[i], FARTHEST);
+            product *= 1 + std::min(shares[i], by.farthest);
         loss += std::log(product);
     }
     return loss;

@@ -20,25 +20,25 @@ public:
     //! The same first points, and the second ones in another order.
     EpipolarProblem mixed(const std::vector<int>& order) const;
 
+    //! Those of the matches that are marked.
+    EpipolarProblem subset(const std::vector<bool>& marks) const;
+
     int size() const { return (int)first_.size(); }
     double mostScale() const { return mostScale_; }
     int sampleSize() const { return 5; }
-    int fewestSamples() const { return 100; }
     int parameters() const { return 5; }
 
     //! The poses that see the sample in front of both cameras.
     void propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const;
 
     //! Blind to points behind a camera, which have an epipolar line all the same.
-    double loss(const RelativePose& pose, double scale, double limit) const;
+    double loss(const RelativePose& pose, const Loss& by, double limit) const;
 
     //! Of a match behind a camera, as of a point at infinity, the nearest that may be.
     void squaredErrors(const RelativePose& pose, std::vector<double>& errors) const;
     //! How far a match is from where a point at infinity would be seen, pixels: as Sampson's error, a part of it in either image.
     double parallax(const RelativePose& pose, int i) const;
 
-    //! The same epipolar lines, and t the other way.
-    std::vector<RelativePose> alternatives(const RelativePose& pose) const { return {{pose.R, -pose.t}}; }
     //! What else the plane that most of the matches lie on may be seen from (Faugeras and Lustman 1988).
     std::vector<RelativePose> rivals(const RelativePose& pose, double scale) const;
     bool areApart(const RelativePose& pose, const RelativePose& other) const;

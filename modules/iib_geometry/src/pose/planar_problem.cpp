@@ -134,17 +134,17 @@ double PlanarProblem::squaredError(const Matx33d& T, int i) const
     return unit_ * unit_ * (x * x + y * y);
 }
 
-double PlanarProblem::loss(const Matx33d& transform, double scale, double limit) const
+double PlanarProblem::loss(const Matx33d& transform, const Loss& by, double limit) const
 {
     if (mirrors(transform))
-        return size() * std::log1p(FARTHEST);
-    const double perScale2 = 1 / square(scale);
+        return size() * std::log1p(by.farthest);
+    const double perScale2 = 1 / square(by.scale);
     double sum = 0;
     for (int begin = 0; begin < size() && sum <= limit; begin += STRIDE)
     {
         double product = 1;
         for (int i = begin; i < std::min(begin + STRIDE, size()); i++)
-            product *= 1 + std::min(squaredError(transform, i) * perScale2, FARTHEST);
+            product *= 1 + std::min(squaredError(transform, i) * perScale2, by.farthest);
         sum += std::log(product);
     }
     return sum;

@@ -20,17 +20,12 @@ public:
     PlanarProblem mixed(const std::vector<int>& order) const;
 
     int size() const { return (int)image_.size(); }
-    double mostScale() const { return .5; }  // its matches are refined
     int sampleSize() const { return parameters() / 2; }
-    int fewestSamples() const { return 150; }
     int parameters() const { return (int)basis_.size(); }
 
     void propose(const std::vector<int>& sample, std::vector<Matx33d>& transforms) const;
-    double loss(const Matx33d& transform, double scale, double limit) const;
+    double loss(const Matx33d& transform, const Loss& by, double limit) const;
     void squaredErrors(const Matx33d& transform, std::vector<double>& errors) const;
-    std::vector<Matx33d> alternatives(const Matx33d&) const { return {}; }
-    std::vector<Matx33d> rivals(const Matx33d&, double) const { return {}; }
-    bool areApart(const Matx33d&, const Matx33d&) const { return false; }  // a plane has one transform
     void linearize(const Matx33d& transform, double limit, std::vector<Row<Step>>& rows) const;
     Matx33d moved(const Matx33d& transform, const Step& step) const;
 

@@ -5,9 +5,11 @@
 #include <bitset>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "../precomp.hpp"
 #include "opencv2/iib/verdict.hpp"
+#include "opencv2/imgproc.hpp"
 #include "../common/points.hpp"
 
 namespace cv::iib {
@@ -15,8 +17,9 @@ namespace {
 
 double square(double x) { return x * x; }
 
-const int CELLS = 32;      // of the diagonal of what the points span
-const double MODELS = 10;  // that a sample proposes, at most
+const int CELLS = 32;           // of the diagonal of what the points span
+const double CERTAINLY = 1e-3;  // chance
+const double MODELS = 10;       // that a sample proposes, at most
 
 //! The natural logarithm of n!, to ten digits (Abramowitz and Stegun, 6.1.40). C's lgamma writes its sign where all threads do.
 double logFactorial(int n)
@@ -31,6 +34,17 @@ double logFactorial(int n)
 double logBinomial(int n, int k)
 {
     return (logFactorial(n) - logFactorial(k) - logFactorial(n - k)) / std::log(10.);
+}
+
+//! The chance that k or more of n matches agree, each by a chance of its own.
+double chanceOfSoMany(int n, int k, double each)
+{
+    if (k <= 0 || each >= 1)
+        return 1;
+    double sum = 0;
+    for (int j = k; j <= n; j++)
+        sum += std::pow(10., logBinomial(n, j) + j * std::log10(each) + (n - j) * std::log10(1 - each));
+    return sum;
 }
 
 //! Matches of which some agree with a fundamental matrix or a homography, as errorsOfWrongMatches() has them.
@@ -98,21 +112,35 @@ double diagonal(const Size2d& size) { return std::hypot(size.width, size.height)
 
 Verdict::Verdict(const Mat& points1, const Mat& points2)
 {
-    const Mat* const all[] = {&points1, &points2};
-    for (int image = 0; image < 2; image++)
+    const bool oneImage = points1.data == points2.data;
+    firsts_.resize(points1.rows);
+    std::iota(firsts_.begin(), firsts_.end(), 0);
+    for (int round = 0; round < 2; round++)  // what is outermost, places tell, however many matches they have
     {
-        const Mat& points = *all[image];
-        const Rect2d span = spanOf(points);
-        const double cell = diagonal(span.size()) / CELLS;
-        for (int i = 0; i < points.rows; i++)
+        const Mat* const all[] = {&points1, &points2};
+        for (int image = 0; image < 2; image++)
         {
-            const double* p = points.ptr<double>(i);
-            const auto within = [&](double place) {
-                return (int)std::clamp(place / cell, 0., (double)CELLS);
-            };
-            cells_[image].push_back(within(p[1] - span.y) * (CELLS + 1) + within(p[0] - span.x));
+            Mat ofPlaces;
+            for (int i : firsts_)
+                ofPlaces.push_back(all[image]->row(i));
+            const Rect2d span = spanOf(ofPlaces);
+            const double cell = diagonal(span.size()) / CELLS;
+            cells_[image].clear();
+            for (int i = 0; i < points1.rows; i++)
+            {
+                const double* p = all[image]->ptr<double>(i);
+                const auto within = [&](double place) {
+                    return (int)std::clamp(place / cell, 0., (double)CELLS);
+                };
+                cells_[image].push_back(within(p[1] - span.y) * (CELLS + 1) + within(p[0] - span.x));
+            }
+            spans_[image] = span.size();
         }
-        spans_[image] = span.size();
+        std::set<std::pair<int, int>> known;
+        firsts_.clear();
+        for (int i = 0; i < points1.rows; i++)
+            if (oneImage || known.insert({cells_[0][i], cells_[1][i]}).second)
+                firsts_.push_back(i);
     }
 }
 
@@ -137,21 +165,31 @@ int Verdict::places(const Marks& matches) const { return std::min(places(matches
 
 double Verdict::chance(Distance distance, double limit, const std::vector<double>& wrong) const
 {
+    const int few = 3;
     // Of a line, the nearer of two distances counts, in either image; of a point, that in the second one.
     const auto along = [&](const Size2d& span) { return 2 * limit * diagonal(span) / span.area(); };
     const double anywhere = distance == FROM_LINE ? std::max(along(spans_[0]), along(spans_[1]))
                                                   : CV_PI * limit * limit / spans_[1].area();
     const auto near = std::count_if(wrong.begin(), wrong.end(), [&](double e) { return e < limit * limit; });
-    // If none of so many is near, the chance may still be that of one more.
-    const double least = wrong.empty() ? 0 : 1. / (double)(wrong.size() + 1);
-    return std::clamp(
-            std::max((double)near / std::max<size_t>(wrong.size(), 1), least), std::min(anywhere, 1.), 1.);
+    double share = 0;
+    if (distance == FROM_POINT && !wrong.empty())
+        // If none of so many is near, the chance may still be that of one more.
+        share = std::max((double)near / (double)wrong.size(), 1. / (double)(wrong.size() + 1));
+    else if (near >= few || (int)wrong.size() < few)
+        share = (double)near / std::max<double>((double)wrong.size(), 1);
+    else
+    {
+        std::vector<double> nearest = wrong;
+        std::nth_element(nearest.begin(), nearest.begin() + few - 1, nearest.end());
+        share = few / (double)wrong.size() * limit / std::sqrt(nearest[few - 1]);
+    }
+    return std::clamp(share, std::min(anywhere, 1.), 1.);
 }
 
 double Verdict::chanceOfPlaces(const Marks& all, double chance, int image) const
 {
     std::vector<int> counts((CELLS + 1) * (CELLS + 1));
-    for (size_t i = 0; i < all.size(); i++)
+    for (int i : firsts_)
         counts[cells_[image][i]] += all[i];
     double sum = 0, places = 0;
     for (int count : counts)
@@ -176,6 +214,48 @@ double Verdict::logFalseAlarms(const Marks& all, const Marks& agreeing, int samp
         most = std::max(
                 most, of(places(all, image), places(agreeing, image), chanceOfPlaces(all, chance, image)));
     return most;
+}
+
+bool Verdict::isOfOnePart(const Marks& agreeing, int sampleSize, double chance) const
+{
+    const int side = CELLS + 1;
+    const Size parts[] = {{5, 5}, {12, 3}, {3, 12}};  // cells: a twentieth of the image
+    const auto count = std::count_if(firsts_.begin(), firsts_.end(), [&](int i) { return agreeing[i]; });
+    for (const std::vector<int>& cells : cells_)
+        for (const Size& part : parts)
+        {
+            int most = 0;
+            Point best;
+            Mat counts(side, side, CV_64F, Scalar(0)), sums;
+            for (int i : firsts_)
+                counts.at<double>(cells[i] / side, cells[i] % side) += agreeing[i];
+            integral(counts, sums, CV_64F);
+            for (int y = 0; y + part.height <= side; y++)
+                for (int x = 0; x + part.width <= side; x++)
+                {
+                    const int inside =
+                            cvRound(sums.at<double>(y, x) + sums.at<double>(y + part.height, x + part.width) -
+                                    sums.at<double>(y, x + part.width) - sums.at<double>(y + part.height, x));
+                    if (inside > most)
+                    {
+                        most = inside;
+                        best = Point(x, y);
+                    }
+                }
+            if (2 * most <= count)
+                continue;
+            int others = 0, beside = 0;
+            for (int i : firsts_)
+                if (!Rect(best, part).contains(Point(cells[i] % side, cells[i] / side)))
+                {
+                    others++;
+                    beside += agreeing[i];
+                }
+            // Some of the others the pose was fitted to.
+            if (2 * beside < others && chanceOfSoMany(others, beside - sampleSize, chance) > CERTAINLY)
+                return true;
+        }
+    return false;
 }
 
 double Verdict::logFalseAlarms(const std::vector<double>& squared, const std::vector<double>& wrong,
@@ -220,11 +300,11 @@ double logFalseAlarms(
     std::transform(
             marks.begin<uchar>(), marks.end<uchar>(), agreeing.begin(), [](uchar mark) { return mark != 0; });
     const MarkedMatches matches(first, second, epipolar);
+    const Verdict verdict(first, second);
     Matx33d model;
     std::vector<double> wrong;
     if (matches.fit(agreeing, model))
-        wrong = errorsOfWrongMatches(matches, model);
-    const Verdict verdict(first, second);
+        wrong = errorsOfWrongMatches(matches, model, verdict);
     return verdict.logFalseAlarms(Verdict::Marks(first.rows, true), agreeing, epipolar ? 7 : 4,
             verdict.chance(epipolar ? Verdict::FROM_LINE : Verdict::FROM_POINT, threshold, wrong));
 }

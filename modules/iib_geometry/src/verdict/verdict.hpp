@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <numeric>
 #include <vector>
 
 #include "opencv2/core.hpp"
@@ -15,7 +16,7 @@ class Verdict
 public:
     typedef std::vector<bool> Marks;  //!< of the matches
 
-    //! Both N x 2, CV_64F, pixels.
+    //! Both N x 2, CV_64F, pixels; of matches with what is no image, the same points twice.
     Verdict(const Mat& points1, const Mat& points2);
 
     //! What a match's error is the distance from.
@@ -35,13 +36,21 @@ public:
             Distance distance, int sampleSize, const std::vector<double>& limits,
             double* best = nullptr) const;
 
-    /** Chance that a wrong match is so near, 0 to 1: as of points that are anywhere, or, where points gather, as those errors tell; at
-    least that of one in more than there are. */
+    /** Chance that a wrong match is so near, 0 to 1: as of points that are anywhere, or, where points gather, as those errors tell. Where
+    hardly one of them is so near, of a point it is at least that of one in more than there are, and of a line, from which errors are as
+    frequent at any small distance, that of the nearest few. */
     double chance(Distance distance, double limit, const std::vector<double>& wrong) const;
 
     /** The same of matches that agree or not.
     @param chance that a wrong match agrees. */
     double logFalseAlarms(const Marks& all, const Marks& agreeing, int sampleSize, double chance) const;
+
+    /** Whether more than half of the matches that agree are in one small part of an image, and the others agree no more than chance would
+    have it: a caption is no scene. @param chance that a wrong match agrees. */
+    bool isOfOnePart(const Marks& agreeing, int sampleSize, double chance) const;
+
+    //! Of the matches from one place to one place, the first: neighbours are right or wrong together.
+    const std::vector<int>& firstOfPlaces() const { return firsts_; }
 
     //! Of a number of each match: the sums over places of the first image that have any.
     std::vector<double> sumsOfPlaces(const std::vector<double>& values) const;
@@ -54,28 +63,34 @@ public:
 
 private:
     int places(const Marks& matches, int image) const;
-    //! That one of a place's matches agrees: the mean over all places.
+    //! That one of a place's matches agrees: the mean over all places. Those from one place to one place are one.
     double chanceOfPlaces(const Marks& all, double chance, int image) const;
 
     std::vector<int> cells_[2];  // of the matches
+    std::vector<int> firsts_;
     Size2d spans_[2];
 };
 
 /** Squared errors of matches between points of different matches, about 4000: what a model makes of matches that are wrong, where
-the points are. */
+the points are. Of neighbours one counts: mixed, they are not wrong. */
 template <class Problem>
-std::vector<double> errorsOfWrongMatches(const Problem& problem, const typename Problem::Model& model)
+std::vector<double> errorsOfWrongMatches(
+        const Problem& problem, const typename Problem::Model& model, const Verdict& verdict)
 {
-    const int enough = 4096, n = problem.size();
+    const int enough = 4096;
+    const std::vector<int>& firsts = verdict.firstOfPlaces();
+    const int n = (int)firsts.size();
     RNG random(0x5eed);
-    std::vector<int> order(n);
+    std::vector<int> order(problem.size());
+    std::iota(order.begin(), order.end(), 0);
     std::vector<double> all, errors;
     for (int round = 1; round < n && (int)all.size() < enough; round++)
     {
         for (int i = 0; i < n; i++)
-            order[i] = (i + random.uniform(1, n)) % n;
+            order[firsts[i]] = firsts[(i + random.uniform(1, n)) % n];
         problem.mixed(order).squaredErrors(model, errors);
-        all.insert(all.end(), errors.begin(), errors.end());
+        for (int first : firsts)
+            all.push_back(errors[first]);
     }
     return all;
 }
