@@ -67,9 +67,9 @@ bool isCertain(const Aligned& aligned, const Verdict& verdict, int tried)
     std::vector<double> limits;
     for (double limit : {.5, 1., 2., 4.})
         limits.push_back(limit * aligned.limit);
-    return verdict.logFalseAlarms(aligned.fit.squared,
-                   errorsOfWrongMatches(aligned.problem, aligned.fit.model, verdict), Verdict::FROM_POINT,
-                   aligned.problem.sampleSize(), limits) +
+    const auto errorOf = [&](int i, int j) { return aligned.problem.squaredError(aligned.fit.model, i, j); };
+    return verdict.logFalseAlarms(aligned.fit.squared, errorsOfWrongMatches(verdict, errorOf),
+                   Verdict::FROM_POINT, aligned.problem.sampleSize(), limits) +
                    std::log10((double)tried) <
            Verdict::CERTAIN;
 }

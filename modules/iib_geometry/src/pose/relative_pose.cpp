@@ -4,14 +4,14 @@
 #include "pose_fit.hpp"
 #include "../common/points.hpp"
 #include "uncertainty.hpp"
-#include "../verdict/verdict.hpp"
+#include "../verdict/pose_verdict.hpp"
 
 namespace cv::iib {
 namespace {
 
-const double LEAST_SCALE = .1, MOST_SCALE = 1000;    // pixels
-const double RANK = 1e-13;                           // of covariances in double precision
-const double ONE_ROTATION = .05, ONE_DIRECTION = 1;  // radians: two poses less apart are one, not exact
+const double LEAST_SCALE = .1, MOST_SCALE = 1000;  // pixels
+const double RANK = 1e-13;                         // of covariances in double precision
+const double ONE_DIRECTION = 1;                    // radians: of poses more apart, t may have any
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {
@@ -65,8 +65,70 @@ std::vector<double> weightsOf(InputArray covariances, int count)
     return weights;
 }
 
-//! Why the matches tell no pose; empty if they do.
-std::string reasonAgainst(const EpipolarProblem& problem, const PoseFit& fit, const Verdict& verdict)
+//! How far off a pose may be.
+struct PoseErrors
+{
+    Square<EpipolarProblem::Step> covariance;
+    EpipolarProblem::Step
+            rival;  //!< the step to another pose that explains the matches as well, which is another answer
+    bool hasRival = false;
+};
+
+/** The covariance of the matches around a pose, and what makes it larger: a direction that may be chance, and other poses that explain
+the matches as well. */
+PoseErrors estimateErrors(
+        const EpipolarProblem& problem, const PoseFit& fit, const Mat& points, const Verdict& verdict)
+{
+    const double level = 5;                     // standard deviations: another pose within them is expected
+    const double ofPlane = .05, ofOthers = .1;  // radians: turned by less, it is a larger error
+    const Square<EpipolarProblem::Step> anyDirection =
+            square(LARGEST_DEVIATION) * Square<EpipolarProblem::Step>::diag({0, 0, 0, 1, 1});
+    std::vector<int> parts;
+    const std::vector<int> partsOfAll = partsOf(points);
+    std::vector<double> parallaxes, squared;
+    for (int i = 0; i < problem.size(); i++)
+    {
+        parallaxes.push_back(problem.parallax(fit.model, i, i));
+        if (fit.used[i])
+            parts.push_back(partsOfAll[i]);
+    }
+    Fit<EpipolarProblem> around;
+    around.model = fit.model;
+    around.scale = fit.errorScale;
+    PoseErrors errors;
+    errors.covariance = covarianceOf(problem.subset(fit.used), around, parts, LARGEST_DEVIATION);
+    const double limit = 1.5 * std::max(fit.errorScale, LEAST_SCALE);
+    const bool hasDirection = isDirectionCertain(fit.squared, parallaxes, limit, verdict);
+    if (!hasDirection)
+        errors.covariance += anyDirection;
+    const Square<EpipolarProblem::Step> expected = errors.covariance.inv(DECOMP_SVD);
+    for (size_t k = 0; k < fit.others.size(); k++)
+    {
+        const EpipolarProblem::Step step = stepBetween(fit.model, fit.others[k]);
+        if (step.dot(expected * step) < square(level))
+            continue;
+        problem.squaredErrors(fit.others[k], squared);
+        if (explainsMore(fit.squared, squared, fit.errorScale, verdict))
+            continue;
+        const double turned = norm(Vec3d(step.val));
+        if (hasDirection && turned >= (k < fit.planar ? ofPlane : ofOthers) &&
+                turned > norm(Vec3d(errors.rival.val)))
+        {
+            errors.hasRival = true;
+            errors.rival = step;
+        }
+        if (step.dot(errors.covariance.inv(DECOMP_SVD) * step) > 1)  // one deviation away, in the end
+            errors.covariance += step * step.t();
+        if (norm(Vec2d(step.val + 3)) > ONE_DIRECTION)
+            errors.covariance += anyDirection;
+    }
+    errors.covariance = limited(errors.covariance, LARGEST_DEVIATION, RANK);
+    return errors;
+}
+
+//! Why there is no pose; empty if there is one.
+std::string reasonAgainst(
+        const EpipolarProblem& problem, const PoseFit& fit, const PoseErrors& errors, const Verdict& verdict)
 {
     if (fit.squared.empty())
         return "no pose agrees with five matches or more";
@@ -75,97 +137,14 @@ std::string reasonAgainst(const EpipolarProblem& problem, const PoseFit& fit, co
                 "the pose that agrees best has matches in %d places of the image, no more than chance may "
                 "give: the images may not show the same",
                 verdict.places(within(3 * std::max(fit.scale, REFINED), fit.squared)));
-    if (verdict.isOfOnePart(within(fit.limit, fit.squared), problem.sampleSize(), fit.chance))
-        return "the matches that agree are in one small part of the image, and the others do not agree: a "
-               "logo, a "
-               "caption?";
+    if (verdict.isOfSmallParts(within(fit.limit, fit.squared), problem.sampleSize(), fit.chance))
+        return "the matches that agree are in small parts of the image, and the others do not agree: a "
+               "logo, a caption?";
+    if (errors.hasRival)
+        return format("two poses explain the matches as well, turned by %.0f and moved in directions by "
+                      "%.0f degrees against each other: the points may lie on a plane",
+                norm(Vec3d(errors.rival.val)) * 180 / CV_PI, norm(Vec2d(errors.rival.val + 3)) * 180 / CV_PI);
     return "";
-}
-
-//! Matches that agree with a pose, in front of both cameras, and the parts of the image that they are in.
-struct Agreeing
-{
-    EpipolarProblem problem;
-    std::vector<int> parts;
-
-    Agreeing(const EpipolarProblem& all, const std::vector<int>& partsOfAll, const Verdict::Marks& marks)
-        : problem(all.subset(marks))
-    {
-        for (size_t i = 0; i < marks.size(); i++)
-            if (marks[i])
-                parts.push_back(partsOfAll[i]);
-    }
-};
-
-/** Whether more places agree with the pose than with the other one, by one and by more than chance. Errors are cut off at four scales,
-which is a match more; the noise of matches that agree with both, as all of a plane do, is the chance. */
-bool leads(const PoseFit& fit, const std::vector<double>& otherSquared, const Verdict& verdict)
-{
-    const double farthest2 = square(FARTHEST_OF_CHOICE * fit.scale), inside2 = FARTHEST * square(fit.scale);
-    const double level = 2;  // standard deviations
-    std::vector<double> all(fit.squared.size()), both = all;
-    for (size_t i = 0; i < all.size(); i++)
-    {
-        all[i] = (std::min(otherSquared[i], farthest2) - std::min(fit.squared[i], farthest2)) / farthest2;
-        if (std::max(otherSquared[i], fit.squared[i]) < inside2)
-            both[i] = all[i];
-    }
-    double lead = 0, chance2 = 0;
-    for (double places : verdict.sumsOfPlaces(all))
-        lead += std::clamp(places, -1., 1.);
-    for (double places : verdict.sumsOfPlaces(both))
-        chance2 += square(places);
-    return lead >= 1 + level * std::sqrt(chance2);
-}
-
-/** Another pose, far from the errors as the matches around the pose tell them, that explains the matches as well; of several the one that
-is turned most.
-@param between the step to it. */
-bool hasRival(const EpipolarProblem& problem, const PoseFit& fit, const Verdict& verdict,
-        const Square<EpipolarProblem::Step>& errors, EpipolarProblem::Step& between)
-{
-    const double level = 5;  // standard deviations: another pose within them is told by the covariance
-    const Square<EpipolarProblem::Step> inverse = errors.inv(DECOMP_SVD);
-    double most = -1;
-    std::vector<double> squared;
-    for (const RelativePose& other : fit.others)
-    {
-        const EpipolarProblem::Step step = stepBetween(fit.model, other);
-        const double turned = norm(Vec3d(step.val));
-        if (turned <= most || step.dot(inverse * step) < square(level))
-            continue;
-        problem.squaredErrors(other, squared);
-        if (leads(fit, squared, verdict))
-            continue;
-        most = turned;
-        between = step;
-    }
-    return most >= 0;
-}
-
-/** Whether the direction of t is more than chance. Matches without parallax say nothing of it; of the others one whose parallax is
-much longer than the limit agrees with a wrong direction by the chance asin(limit / parallax) 2 / pi. */
-bool tellsDirection(const EpipolarProblem& problem, const PoseFit& fit, const Verdict& verdict)
-{
-    const double limit = 1.5 * std::max(fit.scale, LEAST_SCALE);
-    const int matchesOfDirection = 2;
-    Verdict::Marks seen(fit.squared.size()), agree = seen;
-    double chances = 0, count = 0;
-    for (int i = 0; i < problem.size(); i++)
-    {
-        const double parallax = problem.parallax(fit.model, i);
-        if (parallax < 2 * limit)
-            continue;
-        seen[i] = true;
-        agree[i] = fit.squared[i] < limit * limit;
-        chances += std::asin(limit / parallax) * 2 / CV_PI;
-        count++;
-    }
-    const double chance = chances / std::max(count, 1.),
-                 others = verdict.places(seen) - verdict.places(agree);
-    // Here the chance is so large that it counts that the others do not agree.
-    return verdict.logFalseAlarms(seen, agree, matchesOfDirection, chance) + others * std::log10(1 - chance) <
-           Verdict::CERTAIN;
 }
 
 }  // namespace
@@ -193,65 +172,16 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
     const Verdict verdict(first, second);
     PoseFit fit = fitPose(problem, verdict, scale > 0 ? std::clamp(scale, LEAST_SCALE, MOST_SCALE) : 0,
             weightsOf(covariances, first.rows));
-    std::string why = reasonAgainst(problem, fit, verdict);
-    const Square<EpipolarProblem::Step> anyDirection =
-            square(LARGEST_DEVIATION) * Square<EpipolarProblem::Step>::diag({0, 0, 0, 1, 1});
-    Square<EpipolarProblem::Step> errors;
-    const std::vector<int> parts = partsOf(first);
-    double wide = 0;  // errors with long tails are told as large as they are
-    if (why.empty())
-    {
-        wide = fit.limit < 6 * fit.scale ? fit.scale : fit.limit / 3;
-        if (scale > 0)
-            wide = std::max(wide, widerScale(problem, fit.squared, fit.scale));
-        const Verdict::Marks near = within(3 * fit.scale, fit.squared);
-        const bool few = std::count(near.begin(), near.end(), true) < FEW;
-        if (few && scale == 0)
-            fit.scale = wide = std::max(wide, fit.limit / 3);  // few matches tell too narrow a scale
-        if (few)
-            polish(problem, Loss{fit.scale}, 1e-9, fit.model);
-        else
-            polish(Agreeing(problem, parts, near).problem, Loss{fit.scale}, 1e-9, fit.model);
-        problem.squaredErrors(fit.model, fit.squared);
-    }
+    PoseErrors errors;
+    if (fit.logFalseAlarms < Verdict::CERTAIN)
+        errors = estimateErrors(problem, fit, first, verdict);
+    const std::string why = reasonAgainst(problem, fit, errors, verdict);
     if (inliers.needed())
     {
         Mat agree(first.rows, 1, CV_8U, Scalar(0));
         const Verdict::Marks near = within(3 * std::max(fit.scale, REFINED), fit.squared);
         std::copy(near.begin(), near.end(), agree.begin<uchar>());
         agree.copyTo(inliers);
-    }
-    if (why.empty())
-    {
-        fit.scale = wide;
-        const Verdict::Marks near = within(3 * fit.scale, fit.squared);
-        if (std::count(near.begin(), near.end(), true) < FEW)
-            errors = covarianceOf(problem, fit, parts, LARGEST_DEVIATION);
-        else
-        {
-            const Agreeing agreeing(problem, parts, near);
-            Fit<EpipolarProblem> ofThem;
-            ofThem.model = fit.model;
-            ofThem.scale = fit.scale;
-            errors = covarianceOf(agreeing.problem, ofThem, agreeing.parts, LARGEST_DEVIATION);
-        }
-        const bool told = tellsDirection(problem, fit, verdict);
-        if (!told)
-            errors += anyDirection;
-        EpipolarProblem::Step between;
-        if (hasRival(problem, fit, verdict, errors, between))
-        {
-            const double turned = norm(Vec3d(between.val)), moved = norm(Vec2d(between.val + 3));
-            if (told && turned >= ONE_ROTATION)
-                why = format(
-                        "two poses explain the matches as well, turned by %.0f and moved in directions by "
-                        "%.0f degrees against each other: the points may lie on a plane",
-                        turned * 180 / CV_PI, moved * 180 / CV_PI);
-            errors += between * between.t();
-            if (moved > ONE_DIRECTION)
-                errors += anyDirection;
-        }
-        errors = limited(errors, LARGEST_DEVIATION, RANK);
     }
     if (reason)
         *reason = why;
@@ -264,13 +194,13 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
     if (swapped)
     {
         const Matx<double, 5, 5> back = stepOfInverse(fit.model);
-        errors = limited(back * errors * back.t(), LARGEST_DEVIATION, RANK);
+        errors.covariance = limited(back * errors.covariance * back.t(), LARGEST_DEVIATION, RANK);
         fit.model = inverse(fit.model);
     }
     Mat(fit.model.R).copyTo(R);
     Mat(fit.model.t).copyTo(t);
     if (covariance.needed())
-        Mat(errors).copyTo(covariance);
+        Mat(errors.covariance).copyTo(covariance);
     return true;
 }
 

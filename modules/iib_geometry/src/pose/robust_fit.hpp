@@ -119,118 +119,141 @@ template <class Problem> struct Fit
     double inlierRatio = 0;       //!< share of the matches within three scales
 };
 
-//! Models that samples led to, polished roughly, and how they were found.
-template <class Problem> struct Search
-{
-    std::vector<typename Problem::Model>
-            models;  //!< those of the least loss, the least one first as samples proposed them
-    int samples = 0;
-    bool wantsMore = false;  //!< whether more samples might find a better one
-};
-
 /** Looks for models that many matches agree with. The same in every run.
 
 Samples propose models, and those of the least loss are kept. Each is polished under a wider loss in the end: at a narrow scale a model
-that a cluster of wrong matches has drawn to itself may win.
-@param fewest samples that are tried, however many matches agree.
-@param pool matches that samples are taken from; empty: all. */
-template <class Problem>
-Search<Problem> search(const Problem& problem, const Loss& by, const Loss& wider, int fewest, int mostTrials,
-        const std::vector<int>& pool = {})
+that a cluster of wrong matches has drawn to itself may win. */
+template <class Problem> class Search
 {
+public:
     typedef typename Problem::Model Model;
-    const double roughly = 1e-3;  // how much less of its loss a model is polished for
-    const size_t most = 10;  // are polished in the end: that of the least loss need not lead to the best one
-    const size_t expected = 2;   // are polished before: by the better one samples are expected
-    const double missed = 1e-4;  // probability that no sample was of right matches alone
-    const double none = std::numeric_limits<double>::max();
-    Search<Problem> found;
-    const int count = problem.size(), size = problem.sampleSize();
-    if (count < size || (!pool.empty() && (int)pool.size() < size))
-        return found;
 
-    RNG random(0x5eed);
+    /** @param fewest samples that are tried, however many matches agree.
+    @param missed probability that no sample was of right matches alone.
+    @param pool matches that samples are taken from; empty: all. */
+    Search(const Problem& problem, const Loss& by, const Loss& wider, int fewest, double missed,
+            const std::vector<int>& pool = {})
+        : problem_(problem), by_(by), wider_(wider), fewest_(fewest), missed_(missed), pool_(pool),
+          random_(0x5eed)
+    {
+        if (pool_.empty())
+            for (int i = 0; i < problem.size(); i++)
+                pool_.push_back(i);
+    }
+
+    /** Goes on until so many samples were tried, or enough for as many matches as agree.
+    @return models polished roughly: those of the least loss, the least one first as samples proposed them. */
+    std::vector<Model> upTo(int mostTrials)
+    {
+        if ((int)pool_.size() >= problem_.sampleSize())
+            while (samples_ < std::min<double>(mostTrials, wanted_))
+                trySamples(mostTrials);
+        std::vector<Model> models(best_.size());
+        inParallel(best_.size(), [&](size_t i) {
+            models[i] = best_[i].second;
+            polish(problem_, wider_, ROUGHLY, models[i]);
+        });
+        return models;
+    }
+
+    int samples() const { return samples_; }
+    bool wantsMore() const { return samples_ < wanted_; }  //!< whether more samples might find a better one
+
+private:
+    static constexpr double ROUGHLY = 1e-3;  // how much less of its loss a model is polished for
+    static constexpr size_t MOST = 10;       // kept: that of the least loss need not lead to the best one
     struct Proposal
     {
         std::vector<int> sample;
         std::vector<Model> models;
         std::vector<double> losses;  // or anything over the limit
     };
-    // Several threads propose at once; models are taken in the order of their samples, by the limit that is then. The fewest
-    // samples, 100 or 150, are whole batches.
-    const double batch = getNumThreads() > 1 ? 25 : 1;
-    std::vector<Proposal> proposals;
-    std::vector<std::pair<double, Model>> best;  // losses in order, and models
-    std::vector<double> squared;
-    double leastLoss = none, trials = mostTrials;
-    bool better = false;  // whether there is a better one than when samples were last expected
-    const auto expect = [&](Model model) {
-        polish(problem, by, roughly, model);
-        const double loss = problem.loss(model, by, leastLoss);
-        if (loss >= leastLoss)
-            return;
-        leastLoss = loss;
-        problem.squaredErrors(model, squared);
-        const double inside = FARTHEST * square(by.scale);
-        const auto near = std::count_if(squared.begin(), squared.end(), [&](double e) { return e < inside; });
-        // Fischler and Bolles (1981): samples until one in 1 / missed searches had none of right matches alone.
-        const double right = std::pow((double)near / count, size);  // probability of such a sample
-        const double wanted = right > 0 ? std::log(missed) / std::log1p(-std::min(right, .999)) : none;
-        trials = std::max<double>(fewest, std::min<double>(mostTrials, wanted));
-    };
-    const auto limitOf = [&] { return best.size() < most ? none : best.back().first; };
-    while (found.samples < trials)
+
+    double limit() const
     {
-        proposals.resize(cvCeil(std::min(batch, trials - found.samples)));
-        for (Proposal& proposal : proposals)
+        return best_.size() < MOST ? std::numeric_limits<double>::max() : best_.back().first;
+    }
+
+    //! Several threads propose at once; models are taken in the order of their samples, by the limit that is then.
+    void trySamples(int mostTrials)
+    {
+        // The fewest samples, 100 or 150, are whole batches.
+        const double batch = getNumThreads() > 1 ? 25 : 1;
+        const size_t expected = 2;  // are polished before: by the better one samples are expected
+        proposals_.resize(cvCeil(std::min({batch, (double)mostTrials - samples_, wanted_ - samples_})));
+        for (Proposal& proposal : proposals_)
         {
             std::vector<int>& sample = proposal.sample;
-            sample.resize(size);
-            for (int k = 0; k < size; k++)
+            sample.resize(problem_.sampleSize());
+            for (size_t k = 0; k < sample.size(); k++)
                 do
-                    sample[k] = pool.empty() ? random.uniform(0, count)
-                                             : pool[random.uniform(0, (int)pool.size())];
+                    sample[k] = pool_[random_.uniform(0, (int)pool_.size())];
                 while (std::find(sample.begin(), sample.begin() + k, sample[k]) != sample.begin() + k);
         }
-        const double limit = limitOf();
-        inParallel(proposals.size(), [&](size_t i) {
-            Proposal& proposal = proposals[i];
-            problem.propose(proposal.sample, proposal.models);
+        const double before = limit();
+        inParallel(proposals_.size(), [&](size_t i) {
+            Proposal& proposal = proposals_[i];
+            problem_.propose(proposal.sample, proposal.models);
             proposal.losses.clear();
             for (const Model& model : proposal.models)
-                proposal.losses.push_back(problem.loss(model, by, limit));
+                proposal.losses.push_back(problem_.loss(model, by_, before));
         });
-        for (size_t i = 0; i < proposals.size() && found.samples < trials; i++)
+        for (size_t i = 0; i < proposals_.size() && samples_ < wanted_; i++)
         {
-            for (size_t k = 0; k < proposals[i].models.size(); k++)
+            for (size_t k = 0; k < proposals_[i].models.size(); k++)
+                keep({proposals_[i].losses[k], proposals_[i].models[k]});
+            if (++samples_ >= fewest_ && better_)
             {
-                const std::pair<double, Model> one(proposals[i].losses[k], proposals[i].models[k]);
-                if (one.first >= limitOf())
-                    continue;
-                if (best.size() == most)
-                    best.pop_back();
-                auto place = best.begin();
-                while (place != best.end() && place->first <= one.first)
-                    ++place;
-                better |= best.insert(place, one) == best.begin();
-            }
-            if (++found.samples >= fewest && better)
-            {
-                for (size_t k = 0; k < std::min(best.size(), expected); k++)
-                    expect(best[k].second);
-                better = false;
+                for (size_t k = 0; k < std::min(best_.size(), expected); k++)
+                    expect(best_[k].second);
+                better_ = false;
             }
         }
     }
 
-    found.wantsMore = trials == mostTrials;
-    found.models.resize(best.size());
-    inParallel(best.size(), [&](size_t i) {
-        found.models[i] = best[i].second;
-        polish(problem, wider, roughly, found.models[i]);
-    });
-    return found;
-}
+    void keep(const std::pair<double, Model>& one)
+    {
+        if (one.first >= limit())
+            return;
+        if (best_.size() == MOST)
+            best_.pop_back();
+        auto place = best_.begin();
+        while (place != best_.end() && place->first <= one.first)
+            ++place;
+        better_ |= best_.insert(place, one) == best_.begin();
+    }
+
+    //! How many samples are wanted if a model is right.
+    void expect(Model model)
+    {
+        polish(problem_, by_, ROUGHLY, model);
+        const double loss = problem_.loss(model, by_, leastLoss_);
+        if (loss >= leastLoss_)
+            return;
+        leastLoss_ = loss;
+        std::vector<double> squared;
+        problem_.squaredErrors(model, squared);
+        const double inside = FARTHEST * square(by_.scale);
+        const auto near = std::count_if(squared.begin(), squared.end(), [&](double e) { return e < inside; });
+        // Fischler and Bolles (1981): samples until one in 1 / missed searches had none of right matches alone.
+        const double right = std::pow((double)near / problem_.size(), problem_.sampleSize());
+        wanted_ = right > 0 ? std::log(missed_) / std::log1p(-std::min(right, .999))
+                            : std::numeric_limits<double>::max();
+        wanted_ = std::max<double>(fewest_, wanted_);
+    }
+
+    const Problem& problem_;
+    const Loss by_, wider_;
+    const int fewest_;
+    const double missed_;
+    std::vector<int> pool_;
+    RNG random_;
+    std::vector<Proposal> proposals_;
+    std::vector<std::pair<double, Model>> best_;  // losses in order, and models
+    double leastLoss_ = std::numeric_limits<double>::max(), wanted_ = leastLoss_;
+    bool better_ = false;  // whether there is a better one than when samples were last expected
+    int samples_ = 0;
+};
 
 //! Takes the errors of a fit's model, and how many of the matches are near.
 template <class Problem> void finish(const Problem& problem, Fit<Problem>& fit)
@@ -242,51 +265,55 @@ template <class Problem> void finish(const Problem& problem, Fit<Problem>& fit)
     fit.inlierRatio = (double)count / std::max(problem.size(), 1);
 }
 
-/** Whether the errors within a distance are those of right matches: most of them far below it, and few others around it. Else matches
-err by more, or are wrong.
-@param parameters of the model: so many errors are small because it was fitted to them.
-@param scale that the errors within it tell, by their median (Rousseeuw and Leroy 1987). */
-inline bool settles(const std::vector<double>& squared, double distance, int parameters, double& scale)
+/** The scale of the errors within a distance, by their median (Rousseeuw and Leroy 1987), pixels.
+@param parameters of the model: so many errors are small because it was fitted to them. */
+inline double scaleWithin(const std::vector<double>& squared, double distance, int parameters)
 {
-    const double most = .3;                  // of the distance: the median error
-    const double wider = 4, mostMore = 1.5;  // of those within the distance are within so many of it
-    const double least = .1;                 // scale, pixels: of refined matches
+    const double least = .1;  // of refined matches
     std::vector<double> near;
-    double around = 0;
     for (double error : squared)
-    {
         if (error < square(distance))
             near.push_back(error);
-        around += error < square(wider * distance);
-    }
     const double free = (double)near.size() - parameters;
     if (free <= 0)
-        return false;
+        return std::max(distance / 3, least);
     const auto middle = near.begin() + near.size() / 2;
     std::nth_element(near.begin(), middle, near.end());
-    const double median = std::sqrt(*middle * near.size() / free);
-    scale = std::max(1.4826 * median, least);
-    return median < most * distance && around - parameters < mostMore * free;
+    return std::max(1.4826 * std::sqrt(*middle * near.size() / free), least);
+}
+
+/** The same, if the errors within the distance are those of right matches: most of them far below it, and few others around it. Else
+matches err by more, or are wrong.
+@return whether they are. */
+inline bool findScale(const std::vector<double>& squared, double distance, int parameters, double& scale)
+{
+    const double most = .445;                // of the distance: the scale
+    const double wider = 4, mostMore = 1.5;  // of those within the distance are within so many of it
+    const auto free = [&](double limit) {
+        return (double)std::count_if(squared.begin(), squared.end(), [&](double error) {
+            return error < square(limit);
+        }) - parameters;
+    };
+    if (free(distance) <= 0)
+        return false;
+    scale = scaleWithin(squared, distance, parameters);
+    return scale < most * distance && free(wider * distance) < mostMore * free(distance);
 }
 
 /** The model that most matches agree with. The same in every run.
 @param scale of Cauchy's loss, pixels; 0: the errors tell it. Then scales from that of refined matches upwards are tried, each twice
-    the one before, with few samples, until the errors settle.
+    the one before, with few samples, until most errors are far below it.
 @param mostScale by which models are looked for, pixels. */
 template <class Problem> Fit<Problem> robustFit(const Problem& problem, double scale, double mostScale = .5)
 {
-    const double finely = 1e-9, refined = .25;
+    const double finely = 1e-9, refined = .25, missed = 1e-4;
     const int fewest = 150, fewTrials = 1000, mostTrials = 10000;
     Fit<Problem> fit;
-    bool wantsMore = false;
-    const auto searchBy = [&](double narrow, int trials) {
-        const Search<Problem> found = search(problem, Loss{narrow}, Loss{2 * narrow}, fewest, trials);
-        fit.samples += found.samples;
+    const auto choose = [&](Search<Problem>& search, double narrow, int trials) {
         fit.squared.clear();
-        wantsMore = found.wantsMore;
         double least = std::numeric_limits<double>::infinity();
         std::vector<double> squared;
-        for (const typename Problem::Model& model : found.models)
+        for (const typename Problem::Model& model : search.upTo(trials))
         {
             double sum = 0;
             problem.squaredErrors(model, squared);
@@ -298,24 +325,31 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
             fit.model = model;
             fit.squared.swap(squared);
         }
+        fit.samples = search.samples();
     };
-    double narrow = scale > 0 ? scale : refined, told = scale;
-    bool settled = scale > 0;
-    for (; !settled && narrow <= mostScale; narrow *= settled ? 1 : 2)
+    double narrow = scale > 0 ? scale : refined, estimated = scale;
+    bool found = scale > 0;
+    for (; !found && narrow <= mostScale; narrow *= found ? 1 : 2)
     {
-        searchBy(narrow, fewTrials);
-        settled = settles(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), told);
+        Search<Problem> search(problem, Loss{narrow}, Loss{2 * narrow}, fewest, missed);
+        choose(search, narrow, fewTrials);
+        found = findScale(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), estimated);
+        if (found && search.wantsMore())
+            choose(search, narrow, mostTrials);
     }
-    if (!settled)
+    if (!found)
         narrow = 2 * refined;
-    if (wantsMore || fit.squared.empty() || !settled)
-        searchBy(narrow, mostTrials);
+    if (fit.squared.empty() || !found)
+    {
+        Search<Problem> search(problem, Loss{narrow}, Loss{2 * narrow}, fewest, missed);
+        choose(search, narrow, mostTrials);
+    }
     if (fit.squared.empty())
         return fit;
-    if (scale == 0 && !settles(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), told))
-        told = narrow;
-    fit.scale = told;
-    polish(problem, Loss{told}, finely, fit.model);
+    if (scale == 0 && !findScale(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), estimated))
+        estimated = narrow;
+    fit.scale = estimated;
+    polish(problem, Loss{estimated}, finely, fit.model);
     finish(problem, fit);
     return fit;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <numeric>
+#include <functional>
 #include <vector>
 
 #include "opencv2/core.hpp"
@@ -45,9 +45,10 @@ public:
     @param chance that a wrong match agrees. */
     double logFalseAlarms(const Marks& all, const Marks& agreeing, int sampleSize, double chance) const;
 
-    /** Whether more than half of the matches that agree are in one small part of an image, and the others agree no more than chance would
-    have it: a caption is no scene. @param chance that a wrong match agrees. */
-    bool isOfOnePart(const Marks& agreeing, int sampleSize, double chance) const;
+    /** Whether more than half of the matches that agree are in one small part of an image, or four fifths in up to four each of which is only
+    shifted, and the others agree no more than chance would have it: captions are no scene.
+    @param chance that a wrong match agrees. */
+    bool isOfSmallParts(const Marks& agreeing, int sampleSize, double chance) const;
 
     //! Of the matches from one place to one place, the first: neighbours are right or wrong together.
     const std::vector<int>& firstOfPlaces() const { return firsts_; }
@@ -66,34 +67,21 @@ private:
     //! That one of a place's matches agrees: the mean over all places. Those from one place to one place are one.
     double chanceOfPlaces(const Marks& all, double chance, int image) const;
 
+    //! Of matches in a part of the image, those that are shifted like most.
+    double countOfOneShift(const Marks& matches, const std::function<bool(int)>& isInside) const;
+
     std::vector<int> cells_[2];  // of the matches
+    std::vector<Point2d> shifts_;
+    double cell_ = 0;  // pixels
     std::vector<int> firsts_;
     Size2d spans_[2];
 };
 
-/** Squared errors of matches between points of different matches, about 4000: what a model makes of matches that are wrong, where
-the points are. Of neighbours one counts: mixed, they are not wrong. */
-template <class Problem>
+/** Squared errors of wrong matches, about 4000: of those between a point of one match and the other point of another one. Of neighbours
+one counts: mixed, they are not wrong.
+@param errorOf squared error of the first point of one match with the second point of another. */
 std::vector<double> errorsOfWrongMatches(
-        const Problem& problem, const typename Problem::Model& model, const Verdict& verdict)
-{
-    const int enough = 4096;
-    const std::vector<int>& firsts = verdict.firstOfPlaces();
-    const int n = (int)firsts.size();
-    RNG random(0x5eed);
-    std::vector<int> order(problem.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::vector<double> all, errors;
-    for (int round = 1; round < n && (int)all.size() < enough; round++)
-    {
-        for (int i = 0; i < n; i++)
-            order[firsts[i]] = firsts[(i + random.uniform(1, n)) % n];
-        problem.mixed(order).squaredErrors(model, errors);
-        for (int first : firsts)
-            all.push_back(errors[first]);
-    }
-    return all;
-}
+        const Verdict& verdict, const std::function<double(int, int)>& errorOf);
 
 //! Which squared errors are below limit^2.
 Verdict::Marks within(double limit, const std::vector<double>& squared);

@@ -25,9 +25,10 @@ of a 32nd of the diagonal of what the points span, since matches beside each oth
 often a wrong match agrees is what points of different matches do with the pose, so that a skyline is no pose. Nor is there one where
 most of the places that agree are in a twentieth of an image, and the others agree no more than chance would have it, as with a caption.
 
-There is none either where a second pose, turned by 3 degrees or more and far outside of the covariance, explains the matches as
-well but for what noise may give, as two do of a plane: the other one of the plane that most of the matches lie on is looked for.
-Where it turns less, or nothing tells the direction of t, the covariance holds it. Of exact planes, 200 and 800 matches
+There is none either where a second pose, far outside of the covariance, explains the matches as well but for what noise may give. One
+of the plane that most of the matches lie on must be turned by 3 degrees or more, another one by 6. Where it turns less, or nothing shows
+the direction of t, the covariance is enlarged to reach it. Matches behind a camera, or of a parallax of which so many are wrong that the
+near ones may be near by chance, count neither in the last fit nor in the covariance. Of exact planes, 200 and 800 matches
 with noise of .2 pixels, half of the poses or more are right, and a third or more refused (`of_a_plane_is_right_or_refused` of RelativePose).
 
 How often that errs, with 2000 points by the recommended chain, propagated: none of 446 pairs of images of different places had a pose; of 144
