@@ -45,18 +45,14 @@ struct Candidate
     bool operator<(const Candidate& other) const { return sum < other.sum; }
 };
 
-//! A pose, or the one with t the other way, which has the same epipolar lines.
 Candidate candidateOf(
         const EpipolarProblem& problem, const RelativePose& pose, double scale, const Errors& weights)
 {
-    Candidate two[2];
-    for (int k = 0; k < 2; k++)
-    {
-        two[k].pose = {pose.R, k ? -pose.t : pose.t};
-        problem.squaredErrors(two[k].pose, two[k].squared);
-        two[k].sum = misfit(two[k].squared, scale, weights);
-    }
-    return two[two[1].sum < two[0].sum];
+    Candidate candidate;
+    candidate.pose = pose;
+    problem.squaredErrors(pose, candidate.squared);
+    candidate.sum = misfit(candidate.squared, scale, weights);
+    return candidate;
 }
 
 /** The best of the poses that a search leads to, and the other candidates.

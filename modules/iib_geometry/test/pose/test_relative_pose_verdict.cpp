@@ -37,22 +37,27 @@ void append(Views& views, const Point2d& first, const Point2d& second)
     views.points2.push_back(Mat(Matx12d(second.x, second.y)));
 }
 
-TEST(RelativePose, one_caption_among_random_matches_is_refused)
+TEST(RelativePose, captions_among_random_matches_are_refused)
 {
     RNG random(61);
-    for (int trial = 0; trial < 20; trial++)
-    {
-        Views views(random, randomPose(random, .2), 240, 240, 0);
-        const Point2d corner(random.uniform(20., 400.), random.uniform(20., 420.));
-        for (int i = 0; i < 60; i++)
+    for (int captions : {1, 2, 3})
+        for (int trial = 0; trial < 10; trial++)
         {
-            const Point2d p = corner + Point2d(random.uniform(0., 200.), random.uniform(0., 30.));
-            append(views, p, p + Point2d(random.gaussian(.1), random.gaussian(.1)));
+            Views views(random, randomPose(random, .2), 240, 240, 0);
+            for (int caption = 0; caption < captions; caption++)
+            {
+                const Point2d corner(random.uniform(20., 400.), random.uniform(20., 420.)),
+                        shift(random.uniform(-15., 15.), random.uniform(-15., 15.));
+                for (int i = 0; i < (captions == 1 ? 60 : 30); i++)
+                {
+                    const Point2d p = corner + Point2d(random.uniform(0., 200.), random.uniform(0., 30.));
+                    append(views, p, p + shift + Point2d(random.gaussian(.1), random.gaussian(.1)));
+                }
+            }
+            const Found result(views);
+            EXPECT_FALSE(result.found) << captions << ' ' << trial;
+            EXPECT_FALSE(result.reason.empty());
         }
-        const Found result(views);
-        EXPECT_FALSE(result.found) << trial;
-        EXPECT_FALSE(result.reason.empty());
-    }
 }
 
 TEST(RelativePose, more_right_matches_are_no_reason_against_it)
@@ -154,30 +159,6 @@ TEST(RelativePose, a_match_of_odd_parallax_is_no_more_than_chance)
     EXPECT_FALSE(marks[50]);
     parallaxes.assign(100, 10);
     EXPECT_TRUE(withinByMoreThanChance(squared, parallaxes, 1)[50]);
-}
-
-TEST(RelativePose, of_a_noisy_plane_is_seldom_wrong_and_sure)
-{
-    RNG random(68);
-    int beyond = 0;
-    for (int trial = 0; trial < 40; trial++)
-    {
-        const RelativePose truth = randomPose(random, .2);
-        Views views(random, truth, 200, 100, 1.5);
-        const Vec2d slope(random.uniform(-.5, .5), random.uniform(-.5, .5));
-        for (int i = 100; i < 200; i++)
-        {
-            const Vec3d ray = CAMERA.inv() * anyPixel(random);
-            see(random, truth, ray * (8 / (1 + slope[0] * ray[0] + slope[1] * ray[1])), 1.5,
-                    views.points1.ptr<double>(i), views.points2.ptr<double>(i));
-        }
-        const Found result(views);
-        if (!result.found)
-            continue;
-        const Vec<double, 5> off = stepBetween(result.pose, truth);
-        beyond += off.dot(result.covariance.inv() * off) > 25;
-    }
-    EXPECT_LE(beyond, 1);  // ten, if the second pose of the plane is not judged
 }
 
 // Of 350 matches 49 are right, and not one sample in ten thousand is of these alone.
