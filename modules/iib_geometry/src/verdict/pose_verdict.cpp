@@ -33,7 +33,7 @@ bool explainsMore(const std::vector<double>& squared, const std::vector<double>&
     for (double place : verdict.sumsOfPlaces(all))
         more += std::clamp(place, -1., 1.);
     for (double place : verdict.sumsOfPlaces(both))
-        chance2 += square(place);
+        chance2 += square(std::clamp(place, -1., 1.));
     return more >= 1 + level * std::sqrt(chance2);
 }
 
