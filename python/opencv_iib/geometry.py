@@ -57,7 +57,7 @@ def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:
 
 
 def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: ArrayLike, cameraMatrix2: ArrayLike,
-                     scale: float = 0) -> RelativePose:
+                     scale: float = 0, covariances: Optional[ArrayLike] = None) -> RelativePose:
     """Finds where camera 2 stands, seen from camera 1, from matched points of which many may be wrong.
 
     As ``cv2.iib.findRelativePose``. Points must be free of lens distortion:
@@ -68,12 +68,15 @@ def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: Arra
     :param cameraMatrix1: 3 x 3, [fx 0 cx; 0 fy cy; 0 0 1], of camera 1.
     :param cameraMatrix2: of camera 2.
     :param scale: pixels: about the standard deviation of the points; 0: the residuals tell it.
-    :return: a tuple (found, R, t, inliers, covariance), with its `reason`. Not found: the matches that agree are not more than chance, or
+    :param covariances: N x 3, pixels^2: of the places of the matches, xx, xy, yy, as refineMatches and propagateMatches give them. A match that
+        was located less exactly counts less in the choice among poses.
+    :return: a tuple (found, R, t, inliers, covariance), with its `reason`. Not found: the matches that agree could be random, or
         two poses explain them as well, as of a plane.
     :raises opencv_iib.error: for arrays of other shapes, points that are not one for one, and a scale below 0.
     """
+    rows = np.empty((0, 3)) if covariances is None else _numbers(covariances, 'covariances')
     pose, reason = _core.findRelativePose(_numbers(points1, 'points1'), _numbers(points2, 'points2'), _numbers(cameraMatrix1, 'cameraMatrix1'),
-                                          _numbers(cameraMatrix2, 'cameraMatrix2'), number(scale, 'scale'))
+                                          _numbers(cameraMatrix2, 'cameraMatrix2'), number(scale, 'scale'), rows)
     result = RelativePose(*pose)
     result.reason = reason
     return result

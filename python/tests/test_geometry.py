@@ -29,6 +29,9 @@ class RelativePose(unittest.TestCase):
         found, R, t, inliers, covariance = opencv_iib.findRelativePose(first, second, CAMERA, CAMERA)
         self.assertTrue(found)
         self.assertEqual(opencv_iib.findRelativePose(first, second, CAMERA, CAMERA).reason, '')
+        self.assertTrue(opencv_iib.findRelativePose(first, second, CAMERA, CAMERA, covariances=np.ones((len(first), 3))).found)
+        with self.assertRaisesRegex(opencv_iib.error, 'covariances'):
+            opencv_iib.findRelativePose(first, second, CAMERA, CAMERA, covariances=np.ones((2, 3)))
         np.testing.assert_allclose(R, np.eye(3), atol=1e-3)
         np.testing.assert_allclose(t, [[-1], [0], [0]], atol=3e-3)
         self.assertEqual((inliers.shape, covariance.shape), ((100, 1), (5, 5)))

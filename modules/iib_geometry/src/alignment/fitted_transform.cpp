@@ -70,7 +70,7 @@ FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const Fi
     const double roughly = 1e-4;
     fit.model = simplified(richer.fit.model, kind);
     fit.scale = richer.fit.scale;
-    polish(problem, fit.scale, roughly, fit.model);
+    polish(problem, Loss{fit.scale}, roughly, fit.model);
     problem.squaredErrors(fit.model, fit.squared);
     agree = within(limit, fit.squared);
 }
@@ -93,7 +93,8 @@ bool FittedTransform::isCertain(const Verdict& verdict, int tried) const
     std::vector<double> limits;
     for (double times : {.5, 1., 2., 4.})
         limits.push_back(times * limit);
-    return verdict.logFalseAlarms(fit.squared, errorsOfWrongMatches(problem, fit.model), Verdict::FROM_POINT,
+    const auto errorOf = [&](int i, int j) { return problem.squaredError(fit.model, i, j); };
+    return verdict.logFalseAlarms(fit.squared, errorsOfWrongMatches(verdict, errorOf), Verdict::FROM_POINT,
                    problem.sampleSize(), limits) +
                    std::log10((double)tried) <
            Verdict::CERTAIN;

@@ -112,11 +112,14 @@ Square<typename Problem::Step> covarianceOf(const Problem& problem, const Fit<Pr
     };
     std::vector<Part> all(PARTS_ACROSS * PARTS_DOWN);
     Square<Step> hessian = Square<Step>::zeros(), ofGradient = hessian;  // its covariance
-    for (const Row<Step>& row : rows)
+    const std::vector<Square<Step>> noises = problem.noiseInDerivatives(fit.model, rows, noise2);
+    for (size_t i = 0; i < rows.size(); i++)
     {
+        const Row<Step>& row = rows[i];
         Part& part = all[parts[row.match]];
         const double weight = 1 / (1 + row.r2 * perScale2);
         addProduct(row.J, bend * weight, part.hessian);
+        part.hessian -= noises[i] * bend;
         addProduct(row.J, noise2 * square(meanSlope), ofGradient);
         part.gradient += weight * row.r * row.J;
         part.along += weight * row.J;
@@ -128,7 +131,6 @@ Square<typename Problem::Step> covarianceOf(const Problem& problem, const Fit<Pr
         addProduct(part.along, shared * noise2, ofGradient);
     }
     mirror(ofGradient);
-    hessian -= problem.noiseInDerivatives(fit.model, rows, noise2) * bend;
     const double least = noise2 / square(largest);
     Square<Step> unknown;
     const Square<Step> inverse = inverseWithFloor(hessian, least, &unknown);
