@@ -56,8 +56,9 @@ Candidate candidateOf(
 }
 
 /** The best of the poses that a search leads to, and the other candidates.
-@param unit scale of the search, pixels. */
-PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double unit,
+@param unit scale of the search, pixels.
+@param farthest of a match that agrees, pixels: in a wider band matches of nearby points agree, whatever they are. */
+PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double unit, double farthest,
         Search<EpipolarProblem>& search, int trials, const Errors& weights)
 {
     PoseFit fit;
@@ -96,7 +97,7 @@ PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double uni
         fit.others.push_back(candidates[i].pose);
     std::vector<double> limits;
     for (double scales : {1.5, 3., 6., 12.})
-        limits.push_back(scales * unit);
+        limits.push_back(std::min(scales * unit, farthest));
     const Matx33d essential = essentialOf(fit.model);
     const Errors wrong = errorsOfWrongMatches(
             verdict, [&](int i, int j) { return problem.squaredError(fit.model, essential, i, j); });
@@ -112,12 +113,13 @@ PoseFit searchPose(
 {
     PoseFit best;
     int samples = 0;
+    const double farthest = scale > 0 ? LAST_THRESHOLD * scale : .75 * problem.mostScale();
     const auto isCertain = [&] { return best.logFalseAlarms < Verdict::CERTAIN; };
     const auto tryBy = [&](double unit, int fewTrials, int mostTrials) {
         Search<EpipolarProblem> search(problem, Loss{unit}, Loss{2 * unit}, FEWEST, MISSED);
         for (int trials : {fewTrials, mostTrials})
         {
-            PoseFit fit = fitBy(problem, verdict, unit, search, trials, weights);
+            PoseFit fit = fitBy(problem, verdict, unit, farthest, search, trials, weights);
             fit.scale = scale > 0 ? scale : scaleWithin(fit.squared, fit.limit, problem.parameters());
             if (best.squared.empty() || fit.logFalseAlarms < best.logFalseAlarms)
                 best = fit;
