@@ -370,18 +370,20 @@ def main():
         print(__doc__.split('\n\n')[0] + '; PAIRS must be one', file=sys.stderr)
         return 2
     pairs, out = map(pathlib.Path, sys.argv[1:3])
+    import controls  # which imports this
+    all_others = {**OTHERS, 'controls.csv': ('controls.csv', controls.summarize), 'neighbours.csv': ('neighbours.csv', controls.summarize_neighbours)}
 
     def run(source):
         return run_of(pairs / source, *sys.argv[3:]) if sys.argv[3:] else ['not recorded']
     summarized = [name for name in PLANS if (pairs / name).is_file()]
     for name in summarized:
         summarize(pairs / name, out / name, *PLANS[name], *([run(name)[0]] if name in KEPT else []))
-    others = [name for name, (source, _) in OTHERS.items() if (pairs / source).is_file()]
+    others = [name for name, (source, _) in all_others.items() if (pairs / source).is_file()]
     for name in others:
-        source, make = OTHERS[name]
+        source, make = all_others[name]
         make(pairs / source, out / name)
     if sys.argv[3:]:
-        sources = {**dict(zip(summarized, summarized)), **{name: OTHERS[name][0] for name in others if name != 'learned.csv'}}  # entered by hand
+        sources = {**dict(zip(summarized, summarized)), **{name: all_others[name][0] for name in others if name != 'learned.csv'}}  # entered by hand
         remember(out / 'runs.csv', {name: run(source) for name, source in sources.items()})
     return 0
 

@@ -9,6 +9,7 @@ import unittest.mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import charts  # noqa: E402
+import controls  # noqa: E402
 import localization  # noqa: E402
 import speed  # noqa: E402
 import summaries  # noqa: E402
@@ -114,6 +115,25 @@ class Figures(unittest.TestCase):
             summaries.summarize_differences(source, target)
             self.assertEqual([line.split(',')[5:] for line in target.read_text().splitlines()[1:]],
                              [['3', '0', '0', '0'], ['2', '0.25', '0.25', '0.25']])
+
+    def test_a_ratio_is_chosen_on_other_places(self):
+        heads = 'set,sequence,target,detector,descriptor,noise,ratio,error,matches'
+        errors = {('yard_2', '0.8'): 0, ('yard_2', '0.9'): 5, ('room_2', '0.8'): 2.5, ('room_2', '0.9'): 1, ('court_2', '0.8'): 'inf', ('court_2', '0.9'): 2.5}
+        lines = ['%s,night,1,%s,%s,0,%s,%s,9' % (place, *method, ratio, error if method[0] == 'ORB' else 0)
+                 for (place, ratio), error in errors.items() for method in (controls.CHAIN, ('ORB', 'ORB'))]
+        with tempfile.TemporaryDirectory() as folder:
+            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
+            source.write_text('\n'.join([heads, *lines]))
+            controls.summarize(source, target)
+            found = summaries.by(summaries.read(target), 'place', 'detector', ratio='best')
+        # without yard .9 is best, without room and without court .8
+        self.assertEqual({place: (row['pairs'], row['at_5'], row['less'], row['poses'], row['wrong']) for (place, name), row in found.items() if name == 'ORB' and place in (
+            'yard', 'room', 'court', 'other light')},
+            {'yard': ('1', '0', '1', '1', '0'), 'room': ('1', '0.5', '0.5', '1', '0'), 'court': ('1', '0', '1', '0', '0'), 'other light': ('2', '0.25', '0.75', '2', '0')})
+
+    def test_bounds_of_rates(self):
+        self.assertAlmostEqual(controls.upper_bound(0, 446), 1 - .05 ** (1 / 446), delta=1e-9)
+        self.assertAlmostEqual(controls.upper_bound(1, 10), .394, delta=.001)  # of Clopper and Pearson's tables
 
     def test_gains_are_of_the_same_pairs(self):
         rows = [('tilde_webcam' if target else 'iib_demo', target, 'ORB', descriptor, 'light', correct, target)
