@@ -56,7 +56,7 @@ def summarize(source, target):
     """Of each method, with the ratio that is best on other places and with each of them: areas under the curve, what the chain has more on the same
     pairs, and how many poses are wrong."""
     methods = summaries.group(summaries.read(source), 'detector', 'descriptor', 'noise')
-    chain = {(row['set'], row['sequence'], row['target']): area(row['error']) for row in at_best(methods[*CHAIN, '0'])}
+    chain = {pair_of(row): area(row['error']) for row in at_best(methods[*CHAIN, '0'])}
     lines = []
     for key, rows in sorted(methods.items()):
         for ratio in ('best', *sorted({row['ratio'] for row in rows})):
@@ -65,7 +65,7 @@ def summarize(source, target):
             for name in dict.fromkeys(name for (place,) in places for name in groups_of(place) if name):
                 of = [members for (place,), members in places.items() if name in groups_of(place)]
                 every = [row for members in of for row in members]
-                less = [[chain[row['set'], row['sequence'], row['target']] - area(row['error']) for row in members] for members in of]
+                less = [[chain[pair_of(row)] - area(row['error']) for row in members] for members in of]
                 poses = [float(row['error']) for row in every if float(row['error']) < math.inf]
                 used = collections.Counter(row['ratio'] for row in every).most_common(1)[0][0]
                 lines.append([name, *key, ratio, used, len(every), len(of), *('%.4g' % summaries.mean([area(row['error'], limit) for row in every]) for limit in (10, 5, 2)),
@@ -75,20 +75,36 @@ def summarize(source, target):
                              'poses', 'wrong'], sorted(lines))
 
 
+def pair_of(row):
+    return row['set'], row['sequence'], row['target']
+
+
+BINS = 25, 50, 100  # right neighbours of normalized SIFT
+STEPS = 'below 25', '25 to 49', '50 to 99', '100 and more'
+
+
 def summarize_neighbours(source, target):
     """By the known depth, means a pair: points that the other image shows, those of them that were detected there, too, and those whose nearest
-    descriptor is there; by kind of place, light and third of the baselines; and the local contrast of the second image."""
+    descriptor is there, and the score of their poses; by kind of place, light, third of the baselines, and right neighbours of normalized SIFT."""
     rows, groups = summaries.read(source), collections.defaultdict(list)
+    points = min((row['points'] for row in rows if (row['detector'], row['descriptor']) == ('SIFT', 'SIFT')), default='')
+    methods = summaries.group(summaries.read(source.with_name('controls.csv')), 'detector', 'descriptor', 'noise')
+    areas = {(*key[:2], points, *pair_of(row)): area(row['error']) for key, of in methods.items() if key[2] == '0' for row in at_best(of)}
+    easy = {pair_of(row): int(row['nearest']) for row in rows if (row['detector'], row['descriptor'], row['points']) == (*OTHER, points)}
     baselines = sorted(float(row['baseline']) for row in rows)
     thirds = [baselines[len(baselines) * k // 3] for k in (1, 2)] if rows else []
     for row in rows:
-        third = sum(float(row['baseline']) > limit for limit in thirds)
-        names = groups_of(row['set']) + ['light: ' + row['sequence'], 'baseline: ' + ('up to %.2f m' % thirds[third] if third < 2 else 'above %.2f m' % thirds[1])]
+        third, step = sum(float(row['baseline']) > limit for limit in thirds), sum(easy[pair_of(row)] >= limit for limit in BINS)
+        names = groups_of(row['set']) + ['light: ' + row['sequence'], 'baseline: ' + ('up to %.2f m' % thirds[third] if third < 2 else 'above %.2f m' % thirds[1]),
+                                         'neighbours: ' + STEPS[step]]
         for name in names:
-            groups[name, row['detector'], row['descriptor'], int(row['points'])].append(row)
+            groups[name, row['detector'], row['descriptor'], row['points']].append(row)
     values = 'contrast', 'visible', 'repeated', 'nearest'
-    summaries.write(target, ['place', 'detector', 'descriptor', 'points', 'pairs', *values],
-                    ([*key, len(of), *('%.4g' % summaries.mean([float(row[v]) for row in of]) for v in values)] for key, of in sorted(groups.items())))
+    lines = []
+    for key, of in sorted(groups.items()):
+        scores = [areas[where] for row in of if (where := (*key[1:], *pair_of(row))) in areas]
+        lines.append([*key, len(of), *('%.4g' % summaries.mean([float(row[v]) for row in of]) for v in values), '%.4g' % summaries.mean(scores) if scores else ''])
+    summaries.write(target, ['place', 'detector', 'descriptor', 'points', 'pairs', *values, 'at_5'], lines)
 
 
 @functools.lru_cache(None)
@@ -120,7 +136,7 @@ def table():
         row = found().get((group, *method))
         return score(row) if row and group == 'other light' else '%.2f' % float(row['at_5']) if row else '–'
     lines = [[name(method), found()['other light', *method]['used'], *(cell(group, method) for group in columns())] for method in methods()]
-    heads = ['%s, %s places' % (group, found()[group, *CHAIN]['places']) for group in columns()]
+    heads = ['%s, places: %s' % (group, found()[group, *CHAIN]['places']) for group in columns()]
     return summaries.table(['points, descriptor', 'ratio', *heads], lines)
 
 
@@ -150,9 +166,9 @@ def claim():
     steps = [[lead(('Hessian', descriptor), ('SIFT normalized', descriptor)) for descriptor in ('IIB UNIVERSAL', 'SIFT')],
              [lead((points, 'IIB UNIVERSAL'), (points, 'SIFT')) for points in ('Hessian', 'SIFT normalized')]]
     return ('On rendered places in other light, with 1000 points an image, the chain scores %s. All methods have the same refinement and estimator,\n'
-            "and each the ratio that is best on other places. %s at `HessianDetector`'s points has %s: %s less on the same pairs;\n"
-            'the best without this library\'s points and bits, %s at points of %s, %s: %s less. Of the lead over SIFT at normalized points (%.2f) the detector\n'
-            'brings %.2f and the descriptor %.2f ([all](doc/results/README.md#poses)).' % (
+            "and each the ratio that is best on other places. %s at `HessianDetector`'s points has %s; the difference, chain minus that, is %s.\n"
+            'The best elsewhere is %s at points of %s, %s, a difference of %s. Of the lead over SIFT at normalized points (%.2f) the detector\n'
+            'brings %.2f and the descriptor %.2f on average ([all](doc/results/README.md#poses)).' % (
                 score(ours), same['descriptor'], score(same), less(same), elsewhere['descriptor'], POINTS.get(elsewhere['detector'], elsewhere['detector']), score(elsewhere),
                 less(elsewhere), lead(CHAIN, OTHER), *map(summaries.mean, steps)))
 
@@ -203,7 +219,51 @@ def neighbours():
         visible, repeated, nearest = (float(row[column]) for column in ('visible', 'repeated', 'nearest'))
         return '%.0f: %.0f %%, %.0f %%' % (nearest, 100 * repeated / visible, 100 * nearest / max(repeated, 1e-9))
     names = [key for key in dict.fromkeys(key[0] for key in counted())]
-    order = [of for of in names if of in columns()] + sorted(of for of in names if ': ' in of)
+    order = columns() + sorted(of for of in names if ': ' in of and of[:10] != 'neighbours')
+    order.sort(key=lambda of: of.startswith('baseline: above'))
     lines = [[of, counted()[of, *CHAIN, '1000']['pairs'], *(cell(of, method) for method in COUNTED)] for of in order]
     lines += [['other light, %s points' % points, counted()['other light', *CHAIN, points]['pairs'], *(cell('other light', method, points) for method in COUNTED)] for points in ('500', '2000')]
     return summaries.table(['1000 points', 'pairs', *map(name, COUNTED)], lines)
+
+
+def pairs():
+    """What the pairs in other light are."""
+    row = found()['other light', *CHAIN]
+    rendered = [of for of in GROUPS['other renderer'] if (of, *CHAIN) in found()]
+    kinds_of = lambda group: ' and '.join(GROUPS[group])  # noqa: E731
+    return ('*Other light*: %s pairs of %s rendered places, five views at noon against three each by night, at dusk and in winter, by POV-Ray.\n'
+            '`PRESET_UNIVERSAL` was trained on walks through another %s, in the same lights; on no %s, and nothing of the library on a %s.\n'
+            '%sGenerators of places are %d, not %s: places of one kind share materials and shapes, so intervals, which\n'
+            'are over places, say how other places of these kinds would do, not how other kinds would.' % (
+                row['pairs'], row['places'], kinds_of('trained on the kind'), kinds_of('same renderer'), kinds_of('kinds of no other use'),
+                '*Other renderer*: %s, by Cycles. ' % ' and '.join('a ' + of for of in rendered) if rendered else '', sum(len(of) for group, of in GROUPS.items() if group != 'other renderer'), row['places']))
+
+
+def cause():
+    """Poses by how many right neighbours normalized SIFT has: why there is no lead where there are many."""
+    names = ['neighbours: ' + step for step in STEPS]
+
+    def cell(of, method):
+        row = counted()[of, *method, '1000']
+        return ['%.0f' % float(row['nearest']), '%.2f' % float(row['at_5'])]
+    lines = [[of.split(': ')[1], counted()[of, *OTHER, '1000']['pairs'], '%.0f' % float(counted()[of, *OTHER, '1000']['contrast']), *cell(of, CHAIN), *cell(of, OTHER)]
+             for of in names if (of, *OTHER, '1000') in counted()]
+    return summaries.table(['right neighbours of SIFT normalized', 'pairs', 'contrast', 'chain: right neighbours', 'score', 'SIFT normalized: right neighbours', 'score'], lines)
+
+
+def limit():
+    """Whether detector or descriptor lose more."""
+    def shares(place, points='1000', method=CHAIN):
+        row = counted()[place, *method, points]
+        visible, repeated, nearest = (float(row[column]) for column in ('visible', 'repeated', 'nearest'))
+        return 100 * repeated / visible, 100 * nearest / repeated
+    ours, sift = shares('other light'), shares('other light', method=('Hessian', 'SIFT'))
+    return ("Of the chain's points that the other image shows, %.0f of 100 are detected there, too, and %.0f of 100 of those have the right nearest neighbour, where SIFT's descriptor at the\n"
+            'same points has %.0f. By night it is %.0f and %.0f, with 500 points %.0f and %.0f, with 2000 %.0f and %.0f. So the detector loses more than the descriptor.' % (
+                *ours, sift[1], *shares('light: night'), *shares('other light', '500'), *shares('other light', '2000')))
+
+
+def run(file):
+    """Which code was measured, and when."""
+    of = summaries.by(summaries.read(RESULTS / 'runs.csv'), 'file')[file]
+    return '`%s` was measured at %s on %s (%s).' % (file, of['commit'].replace(';', ' and '), of['date'], of['machine'])

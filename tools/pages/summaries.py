@@ -231,8 +231,8 @@ def summarize_gains(source, target):
         for pair in sorted(own.keys() & ours):
             scenes[pair[:2]].append((own[pair], ours[pair]))
         pairs = [pair for scene in scenes.values() for pair in scene]
-        lines.append([place, detector, len(pairs)] + ['%.4f' % v for v in (gain(pairs), *interval(scenes.values(), gain))])
-    write(target, ['place', 'detector', 'pairs', 'gain', 'low', 'high'], lines)
+        lines.append([place, detector, len(pairs), len(scenes)] + ['%.4f' % v for v in (gain(pairs), *interval(scenes.values(), gain))])
+    write(target, ['place', 'detector', 'pairs', 'scenes', 'gain', 'low', 'high'], lines)
 
 
 def summarize_differences(source, target):

@@ -10,6 +10,7 @@ import pathlib
 import re
 import sys
 
+import controls
 import summaries
 from releases import artifacts, fuzzing, night
 from summaries import table
@@ -88,17 +89,16 @@ def other_run(*rows):
 
 def learned_limit():
     """README's sentence on learned features."""
-    return ('- With a GPU take [learned features](doc/guide.md#learned-features): ALIKED with LightGlue is the best of all with 2048 points, {most_plain} as it is and\n'
-            '  {most} refined here; with 1000 it has {learned}, the chain {few} (in another run than above). On one thread of a busy CPU, 4000 points of the\n'
-            "  chain have {many} and took [1/{times} of the time](doc/results/README.md#learned-features-and-time) of ALIKED's 1000 in PyTorch{runs};\n"
-            '  no GPU was timed.').format(**learned_and_chain())
+    return ('- [Learned features](doc/guide.md#learned-features), of which ALIKED with LightGlue was tried, find better poses of as many points: of 1000 a score of {learned}, refined here, where the\n'
+            '  chain has {few} ({pairs} pairs). On one thread of a busy CPU, 4000 points of the chain have {many} and took [1/{times} of the time](doc/results/README.md#learned-features-and-time)\n'
+            "  of ALIKED's 1000 in PyTorch{runs}; no GPU was timed.").format(**learned_and_chain())
 
 
 def learned_guide():
     """The guide's sentence on the same."""
-    return ('With as many points ALIKED with LightGlue finds better poses than the chain: 1000, refined, have a score of {learned}, of the chain {few}. The best of all\n'
-            'are 2048 of ALIKED, {most_plain} as they are and {most} refined. 4000 of the chain have {many}, in 1/{times} of the processor time that 1000 of ALIKED take in\n'
-            'PyTorch on one thread{runs}; no score is of the run above ([figures](results/README.md#learned-features-and-time), with OpenCV 4.11).').format(**learned_and_chain())
+    return ('With as many points ALIKED with LightGlue, the one learned matcher that was tried, finds better poses than the chain: 1000, refined, have a score of {learned}, of the chain {few};\n'
+            '2048 have {most_plain} as they are and {most} refined. 4000 of the chain have {many}, in 1/{times} of the processor time that 1000 of ALIKED take in PyTorch on one thread{runs}\n'
+            '([figures](results/README.md#learned-features-and-time), with OpenCV 4.11). No GPU was timed.').format(**learned_and_chain())
 
 
 def classic_detectors():
@@ -113,10 +113,10 @@ def learned_claim():
     chain = {points: found['recommended chain', points, 'mutual, a ratio']['refined'] for points in (1000, 2000, 4000)}
     few, many = (found['ALIKED-n16', points, 'LightGlue'] for points in (1000, 2048))
     return ('*By number of points* ALIKED with LightGlue finds better poses than the chain: of 1000 points %s as they are and %s refined, of 2048 %s and %s,\n'
-            'the chain, refined, of 1000, 2000 and 4000 points %s, %s and %s. *By time* 4000 points of the chain take %.0f ms of one core to their pose,\n'
-            '1000 of ALIKED %.0f: %.0f times as long, in PyTorch and on a machine that was busy with other work%s.' % (
+            'the chain, refined, of 1000, 2000 and 4000 points %s, %s and %s. *By time* 1000 points of ALIKED take %.0f times as long to their pose\n'
+            'as 4000 of the chain, in PyTorch and on a machine that was busy with other work%s.' % (
                 *('%.2f' % float(ways[way]['at_5']) for ways in (few, many) for way in ('plain', 'refined')), *('%.2f' % float(row['at_5']) for row in chain.values()),
-                float(chain[4000]['milliseconds']), float(few['refined']['milliseconds']), float(few['refined']['milliseconds']) / float(chain[4000]['milliseconds']),
+                float(few['refined']['milliseconds']) / float(chain[4000]['milliseconds']),
                 other_run(few['refined'], chain[4000])))
 
 
@@ -179,19 +179,29 @@ def localization_setups():
     return table(['map', 'set-up'] + SETUP_HEAD, setups(('map', 'setup')))
 
 
+SEEN = 'Herz-Jesus-P8', 'entry-P10', 'castle-P30'  # with which rules of matching were settled
+
+
 def located_photographs():
-    """How many images of Strecha's scenes are near their places: method, as they are, relit, both."""
-    found, lines = [row for row in json.loads((ROOT / 'doc/localization/results.json').read_text())['rows'] if row['light'] in ('as they are', 'relit')], []
-    for method in dict.fromkeys(row['method'] for row in found):
-        of = [row for row in found if row['method'] == method]
-        both = [[sum(row[column] for row in of if row['light'] == light) for column in ('within_5', 'images')] for light in ('as they are', 'relit')]
-        lines.append([method, *('%d of %d' % tuple(one) for one in both), '%d of %d' % tuple(map(sum, zip(*both)))])
-    return lines
+    """How many images of Strecha's scenes are near their places, by method: those as they are and those relit, within 5 cm and within 25; then the
+    same within 5 cm of each scene that nothing was chosen on."""
+    found = [row for row in json.loads((ROOT / 'doc/localization/results.json').read_text())['rows'] if row['light'] in ('as they are', 'relit')]
+    unseen = [place for place in dict.fromkeys(row['place'] for row in found) if place not in SEEN]
+
+    def near(method, limit, places):
+        for light in ('as they are', 'relit'):
+            of = [row for row in found if (row['method'], row['light']) == (method, light) and (not places or row['place'] in places)]
+            yield '%d of %d' % tuple(sum(row[column] for row in of) for column in (limit, 'images'))
+    lines = [[method, *near(method, 'within_5', ()), *near(method, 'within_25', ()), *itertools.chain(*(near(method, 'within_5', [place]) for place in unseen))]
+             for method in dict.fromkeys(row['method'] for row in found)]
+    return unseen, lines
 
 
 def localization_photographs():
     """The same as a table."""
-    return table(['within 5 cm and 0.5°', 'as they are', 'relit by computation', 'both'], located_photographs())
+    unseen, lines = located_photographs()
+    heads = ['within 5 cm and 0.5°', 'within 25 cm', *('%s, 5 cm' % place for place in unseen)]
+    return table(['', *(head + light for head in heads for light in ('', ', relit'))], lines)
 
 
 def localization_lights(file):
@@ -246,31 +256,12 @@ def estimates():
 
 
 CHAIN = 'Hessian', 'IIB UNIVERSAL'
-METHODS = {('ORB', 'ORB'): 'ORB', ('AKAZE', 'AKAZE'): 'AKAZE', ('SIFT', 'SIFT'): 'SIFT', ('SIFT normalized', 'SIFT'): 'SIFT normalized',
-           CHAIN: 'recommended chain'}
 WAYS = ('plain', 'MAGSAC'), ('plain', 'PoseLib'), ('propagated', 'findRelativePose')  # OpenCV's, the best of others, and this project's
 
 
 def score(row):
     """The area up to 5 degrees with its interval."""
     return '%.2f (%.2f to %.2f)' % tuple(float(row[name]) for name in ('at_5', 'low', 'high'))
-
-
-def poses():
-    """What others do beside what this project does for poses, for the methods on the first page."""
-    found, lines = estimates(), []
-    for method, label in METHODS.items():
-        cells = ['%.2f' % float(found[(method, place) + way]['at_5']) for place in ('same light', 'other light') for way in WAYS]
-        lines.append(['**%s**' % label if method == CHAIN else label, *cells[:-1], score(found[(method, 'other light') + WAYS[-1]])])
-    head = ['%s: %s' % (place, how) for place in ('same light', 'other light') for how in ('OpenCV', 'PoseLib', 'refined here')]
-    return table(['points and descriptor', *head], lines)
-
-
-def pose_pairs():
-    """What README's poses are of."""
-    same, other = (estimates()[(CHAIN, place) + WAYS[-1]]['pairs'] for place in ('same light', 'other light'))
-    return ('- *Same light*: %s pairs of photographs of two buildings. *Other light*: %s pairs of rendered places at noon against dusk, night and\n'
-            '  winter; [two defaults](doc/results/README.md#poses) were settled when these had been seen, nothing else. In brackets 95 %% intervals over the places.' % (same, other))
 
 
 def pose_methods():
@@ -296,8 +287,34 @@ def drop_in():
         rivals = max(((float(row['correct']), descriptor) for (place, detector, descriptor), row in found.items()
                       if (place, detector) == ('natural', name) and re.match('[BT]EBLID', descriptor)), default=None)
         lines.append([name, correct(name, name), '%s: %.0f' % rivals[::-1] if rivals else '–', correct(name, 'IIB'), gains['natural', name], gains['light', name]])
-    return table(['points of (%s pairs)' % found['natural', 'ORB', 'IIB']['pairs'], 'its own descriptor', 'best of BEBLID and TEBLID', '**IIB**', 'times its own (95 % interval)',
-                  'times its own, on the %s pairs that are of no webcam' % found['light', 'ORB', 'IIB']['pairs']], lines)
+    scenes = {row['place']: row['scenes'] for row in rows('gains.csv')}
+    return table(['points of (%s pairs of %s scenes)' % (found['natural', 'ORB', 'IIB']['pairs'], scenes['natural']), 'its own descriptor', 'best of BEBLID and TEBLID', '**IIB**', 'times its own (95 % interval)',
+                  'times its own, on the %s pairs of %s scenes that are of no webcam' % (found['light', 'ORB', 'IIB']['pairs'], scenes['light'])], lines)
+
+
+SIZES = {32: ('IIB SMALL', 'IIB TINY', 'ORB', 'BEBLID-256', 'TEBLID-256', 'BRIEF-256', 'LATCH-256'),
+         64: ('IIB COMPACT', 'IIB BALANCED', 'BEBLID-512', 'TEBLID-512', 'LATCH-512', 'BRIEF-512')}
+
+
+def equal_sizes():
+    """Descriptors of equal size: at ORB's points, as detected in both images, and at the same points in both; pairs of sets that nothing was trained on."""
+    detected, fixed = (summaries.by(rows(name), key, place='light', **more) for name, key, more in (
+        ('detected_points.csv', 'descriptor', {'detector': 'ORB'}), ('fixed_points.csv', 'configuration', {})))
+    lines = []
+    for size, names in SIZES.items():
+        for name in sorted(names, key=lambda name: -float(fixed[name]['recall'])):
+            at_orb = detected.get(name)
+            lines.append([str(size), name, '%.0f' % float(at_orb['correct']) if at_orb else '–', precision_recall(fixed[name])])
+    return table(['bytes', 'descriptor', "right matches of ORB's points, %s pairs" % detected['ORB']['pairs'], 'precision / recall at fixed points, %s pairs' % fixed['ORB']['pairs']], lines)
+
+
+def rotation_caveat():
+    """What rotation does to upright codes."""
+    turned = summaries.by(rows('robustness.csv'), 'configuration', 'target', kind='turn')
+    recall = {(name, angle): '%.2f' % float(turned[name, angle]['recall']) for name in ('IIB', 'IIB oriented', 'ORB oriented') for angle in ('5', '15', '30')}
+    return ("All other calls stay. **One thing differs**: ORB's descriptor follows the keypoint's angle, and this one is upright. An image rotated by 5, 15 and 30\n"
+            'degrees leaves a recall of %s, %s and %s, ORB %s. Where images rotate, call `setOrientation(ORIENTATION_KEYPOINT)` (%s), or match by\n'
+            '`matchViews`, which searches all rotations.' % (*(recall['IIB', angle] for angle in ('5', '15', '30')), recall['ORB oriented', '15'], recall['IIB oriented', '15']))
 
 
 POSE_KEYS = 'place', 'detector', 'descriptor', 'points', 'estimator'
@@ -306,7 +323,7 @@ POSE_KEYS = 'place', 'detector', 'descriptor', 'points', 'estimator'
 def compared(row, sign=1):
     """How much less than the chain's a way to a pose has, or with -1 how much more, on the same pairs; with its interval."""
     less = summaries.by(rows('differences.csv'), *POSE_KEYS)[tuple(row[key] for key in POSE_KEYS)]
-    return '%.2f (%.2f to %.2f)' % tuple(round(sign * float(less[key]), 2) + 0. for key in ('less', *('low', 'high')[::sign]))
+    return '%.3f (%.3f to %.3f)' % tuple(round(sign * float(less[key]), 3) + 0. for key in ('less', *('low', 'high')[::sign]))
 
 
 def same_light():
@@ -318,24 +335,16 @@ def same_light():
 
 def estimator_limit():
     """README's sentence on other estimators of poses from the same matches."""
-    ours, theirs = (estimates()[CHAIN, 'other light', 'propagated', name] for name in ('findRelativePose', 'PoseLib'))
-    return ("- PoseLib's poses of the same refined matches are as good as `findRelativePose`'s, which refuses some, or better: in other light\n"
-            '  %.2f and %.2f, %s more on the same pairs.' % (float(theirs['at_5']), float(ours['at_5']), compared(theirs, -1)))
+    theirs = estimates()[CHAIN, 'other light', 'propagated', 'PoseLib']
+    return ("- PoseLib finds poses of the same refined matches as well as `findRelativePose`, which refuses some: in other light a difference of\n"
+            '  %s on the same pairs, which is not significant.' % compared(theirs, -1))
 
 
 def pose_claim():
-    """The README's sentence on poses: of others the best of all their ways, on normalized images too."""
-    ours = estimates()[CHAIN, 'other light', *WAYS[-1]]
-
-    def best(place, kinds=('plain', 'refined', 'propagated'), **where):
-        return max((row for row in rows('estimators.csv') if row['place'] == place and row['points'] in kinds and
-                    all(row[key] == value for key, value in where.items())), key=lambda row: float(row['at_5']))
-    sift, orb = (best('other light', descriptor=name) for name in ('SIFT', 'ORB'))
-    return ('On rendered places in other light, with 1000 points an image, the chain scores %s, of at most 1. The most that any of the\n'
-            '[estimators tried](doc/results/README.md#poses) makes of SIFT, at points of `NormalizedDetector` and refined here, is %s, %s less on the same\n'
-            'pairs, of ORB %s; the table has three of the estimators. In the same light\n'
-            "the chain gains nothing: SIFT's matches as they are have %s by PoseLib, the chain's refined ones %.2f ([all](doc/results/README.md#poses))." %
-            (score(ours), score(sift), compared(sift), score(orb), same_light()['sift'], float(estimates()[CHAIN, 'same light', *WAYS[-1]]['at_5'])))
+    """README's sentences on poses in other light, and in one."""
+    return controls.claim() + ("\nIn the same light the chain gains nothing: SIFT's matches as they are have %s by PoseLib, the chain's refined ones %.2f\n"
+                               '(42 pairs of photographs of two buildings, [all](doc/results/README.md#other-estimators)).' % (
+                                   same_light()['sift'], float(estimates()[CHAIN, 'same light', *WAYS[-1]]['at_5'])))
 
 
 def photograph_claim():
@@ -346,15 +355,19 @@ def photograph_claim():
     def told(method):
         largest, others = int(statue[method]['registered'].split()[0]), [int(n) for n in statue[method]['others'].split()]
         return '%d in %d parts, %d in the largest' % (largest + sum(others), 1 + len(others), largest) if others else '%d in one' % largest
-    near = {line[0]: line[1:] for line in located_photographs()}
+    near = {line[0]: line[1:] for line in located_photographs()[1]}
     chain, sift = near['recommended chain'], near['SIFT, normalized image']
+    pair = next(row for row in rows('photographs.csv') if row['method'] == 'chain and SIFT')
+    close, shared = (int(n) for n in pair['close'].split(' of '))
     return ('Of photographs:\n'
-            '- *One statue*, %s photographs from noon to sunset; true poses are unknown, so this counts images alone: COLMAP joins %s reconstruction with the chain\'s points,\n'
-            "  with SIFT's %s, with SIFT's on normalized images %s, by the code of %s ([how](doc/colmap.md#a-comparison)).\n"
+            '- *One statue*, %s photographs from noon to sunset; true poses are unknown, so this counts images: COLMAP joins %s reconstruction with the chain\'s points,\n'
+            "  with SIFT's %s, with SIFT's on normalized images %s. The chain's points are less exact: reprojection errors of %s pixels, SIFT's %s and %s.\n"
+            '  %d of the %d cameras that the chain\'s and SIFT\'s reconstructions share disagree. By the code of %s ([how](doc/colmap.md#a-comparison)).\n'
             '- *Maps of five scenes* in one light: [`Localizer`](doc/maps.md#what-was-measured) places %s photographs within 5 cm and 0.5°, a program with SIFT on\n'
-            '  normalized images, without our refinement, %s: level. Of photographs that a program has darkened and shaded it is %s and %s.\n'
+            '  normalized images, without our refinement, %s. Of photographs that a program has darkened and shaded it is %s and %s; within 25 cm %s and %s.\n'
             '  Rules of matching were settled with three of the five scenes.' % (
-                statue['chain']['registered'].split()[-1], told('chain'), told('SIFT'), told('normalized'), run['date'], chain[0], sift[0], chain[1], sift[1]))
+                statue['chain']['registered'].split()[-1], told('chain'), told('SIFT'), told('normalized'), *(statue[method]['reprojection'] for method in ('chain', 'SIFT', 'normalized')),
+                shared - close, shared, run['date'], chain[0], sift[0], chain[1], sift[1], chain[3], sift[3]))
 
 
 def view_rows(place):
@@ -550,8 +563,11 @@ def photographs_of_many():
 
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
-    drop_in, pose_claim, photograph_claim, speed_claim, sure_claim, poses, presets, propagation, views, views_chosen_on, views_affine, views_run, views_guide, how_sure, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
-    step_by_step, fuzzing, mapped_index, scale_run, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, classic_detectors, learned_claim, learned_limit, estimator_limit, learned_guide, pose_pairs,
+    drop_in, rotation_caveat, equal_sizes, pose_claim, photograph_claim, speed_claim, sure_claim, presets, propagation, views, views_chosen_on, views_affine, views_run, views_guide, how_sure, photographs, photographs_of_many, machine, describing, chains, same_points, matching,
+    step_by_step, fuzzing, mapped_index, scale_run, flat_search, matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time, classic_detectors, learned_claim, learned_limit, estimator_limit, learned_guide,
     detected_points, uncertainty, night, artifacts)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
+ALL.update({'poses': controls.table, 'pose_kinds': controls.kinds, 'pose_ratios': controls.by_ratio, 'pose_noise': controls.noise, 'pose_neighbours': controls.neighbours,
+            'pose_pairs': controls.pairs, 'pose_cause': controls.cause, 'pose_limit': controls.limit, 'wrong_poses': controls.wrong})
+ALL.update({name + '_run': functools.partial(controls.run, file + '.csv') for name, file in (('pose', 'controls'), ('estimator', 'estimators'), ('uncertainty', 'uncertainty'))})

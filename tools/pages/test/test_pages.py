@@ -144,7 +144,7 @@ class Figures(unittest.TestCase):
             with open(source, 'w', newline='') as file:
                 csv.writer(file).writerows([heads, *rows, ('graf', 1, 'ORB', 'ORB', 'viewpoint', 9, 's')])
             summaries.summarize_gains(source, target)
-            self.assertEqual(target.read_text().splitlines()[1:], ['light,ORB,1,2.0000,2.0000,2.0000', 'natural,ORB,2,1.2500,1.0000,2.0000'])
+            self.assertEqual(target.read_text().splitlines()[1:], ['light,ORB,1,1,2.0000,2.0000,2.0000', 'natural,ORB,2,2,1.2500,1.0000,2.0000'])
 
     def test_uncertainty(self):
         with tempfile.TemporaryDirectory() as folder:
