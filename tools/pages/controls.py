@@ -13,6 +13,7 @@ RESULTS = pathlib.Path(__file__).resolve().parents[2] / 'doc/results'
 CHAIN, OTHER = ('Hessian', 'IIB UNIVERSAL'), ('SIFT normalized', 'SIFT')
 # Kinds of places, by what was trained on walks through others of the kind and who renders them.
 GROUPS = {'trained on the kind': ('room', 'terrain'), 'same renderer': ('street', 'facade'), 'kinds of no other use': ('yard', 'hall'), 'other renderer': ('court', 'store')}
+COUNTED = CHAIN, ('Hessian', 'SIFT'), ('SIFT normalized', 'IIB UNIVERSAL'), OTHER, ('SIFT', 'SIFT')  # whose neighbours are shown
 WRONG = 10  # degrees
 POINTS = {'Hessian': 'HessianDetector', 'SIFT normalized': 'SIFT normalized', 'SIFT CLAHE': 'SIFT on CLAHE'}
 
@@ -29,7 +30,7 @@ def groups_of(place):
     """The kind of a place, the group of its kind, and all that POV-Ray renders."""
     of = kind({'set': place})
     group = next((name for name, kinds in GROUPS.items() if of in kinds), None)
-    return [of, group] + ['other light'] * (group not in (None, 'other renderer'))
+    return [of] + [group] * bool(group) + ['other light'] * (group not in (None, 'other renderer'))
 
 
 def at_best(rows):
@@ -56,13 +57,13 @@ def summarize(source, target):
     """Of each method, with the ratio that is best on other places and with each of them: areas under the curve, what the chain has more on the same
     pairs, and how many poses are wrong."""
     methods = summaries.group(summaries.read(source), 'detector', 'descriptor', 'noise')
-    chain = {pair_of(row): area(row['error']) for row in at_best(methods[*CHAIN, '0'])}
+    chain = {pair_of(row): area(row['error']) for row in at_best(methods.get((*CHAIN, '0'), []))}
     lines = []
     for key, rows in sorted(methods.items()):
         for ratio in ('best', *sorted({row['ratio'] for row in rows})):
             chosen = at_best(rows) if ratio == 'best' else [row for row in rows if row['ratio'] == ratio]
             places = summaries.group(chosen, 'set')
-            for name in dict.fromkeys(name for (place,) in places for name in groups_of(place) if name):
+            for name in dict.fromkeys(name for (place,) in places for name in groups_of(place) if (ratio == 'best' or name == 'other light')):
                 of = [members for (place,), members in places.items() if name in groups_of(place)]
                 every = [row for members in of for row in members]
                 less = [[chain[pair_of(row)] - area(row['error']) for row in members] for members in of]
@@ -95,9 +96,9 @@ def summarize_neighbours(source, target):
     thirds = [baselines[len(baselines) * k // 3] for k in (1, 2)] if rows else []
     for row in rows:
         third, step = sum(float(row['baseline']) > limit for limit in thirds), sum(easy[pair_of(row)] >= limit for limit in BINS)
-        names = groups_of(row['set']) + ['light: ' + row['sequence'], 'baseline: ' + ('up to %.2f m' % thirds[third] if third < 2 else 'above %.2f m' % thirds[1]),
+        names = groups_of(row['set'])[1:] + ['light: ' + row['sequence'], 'baseline: ' + ('up to %.2f m' % thirds[third] if third < 2 else 'above %.2f m' % thirds[1]),
                                          'neighbours: ' + STEPS[step]]
-        for name in names:
+        for name in names if (row['detector'], row['descriptor']) in COUNTED else ():
             groups[name, row['detector'], row['descriptor'], row['points']].append(row)
     values = 'contrast', 'visible', 'repeated', 'nearest'
     lines = []
@@ -200,9 +201,6 @@ def wrong():
         lines.append([data, what, str(count), str(yes), str(yes), yes, count])
     return summaries.table(['pairs of', 'by', 'pairs', 'significant', 'of them wrong', 'wrong of all pairs', '95 % bound'],
                            [[*line[:5], '%.1f %%' % (100 * line[5] / line[6]), 'below %.1f %%' % (100 * upper_bound(*line[5:]))] for line in lines])
-
-
-COUNTED = CHAIN, ('Hessian', 'SIFT'), ('SIFT normalized', 'IIB UNIVERSAL'), OTHER, ('SIFT', 'SIFT')
 
 
 @functools.lru_cache(None)

@@ -58,14 +58,14 @@ def curve_places(row):
 
 
 def light_place(row):
-    """Poses of views in one light, or in two, or of a list: those that nothing was chosen on are judged by themselves."""
+    """Poses of views in one light, or in two, or of a list, that nothing was chosen on."""
     if row['set'] == 'strecha':
         return ['same light']
     if row['set'].startswith('list '):  # of pairs, by others
         return [row['set']]
     seed = re.fullmatch('[a-z]+_([0-9]+)', row['set'])
     chosen = row['set'] in CHOSEN_ON or seed and seed[1] in CHOSEN_SEEDS
-    return [] if row['set'] in TRAINED_ON else ['chosen on' if chosen else 'other light']
+    return [] if chosen or row['set'] in TRAINED_ON else ['other light']
 
 
 def scene(row):
