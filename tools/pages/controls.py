@@ -12,7 +12,7 @@ import summaries
 RESULTS = pathlib.Path(__file__).resolve().parents[2] / 'doc/results'
 CHAIN, OTHER = ('Hessian', 'IIB UNIVERSAL'), ('SIFT normalized', 'SIFT')
 # Kinds of places, by what was trained on walks through others of the kind and who renders them.
-GROUPS = {'trained on the kind': ('room', 'terrain'), 'same renderer': ('street', 'facade'), 'kinds of no other use': ('yard', 'hall'), 'other renderer': ('court', 'store')}
+GROUPS = {'trained on the kind': ('room', 'terrain'), 'same renderer': ('street', 'facade'), 'new kinds': ('yard', 'hall'), 'other renderer': ('court', 'store')}
 COUNTED = CHAIN, ('Hessian', 'SIFT'), ('SIFT normalized', 'IIB UNIVERSAL'), OTHER, ('SIFT', 'SIFT')  # whose neighbours are shown
 WRONG = 10  # degrees
 POINTS = {'Hessian': 'HessianDetector', 'SIFT normalized': 'SIFT normalized', 'SIFT CLAHE': 'SIFT on CLAHE'}
@@ -131,14 +131,25 @@ def name(method):
     return ('**%s, %s** (the chain)' if method == CHAIN else '%s, %s') % (points, descriptor)
 
 
-def table():
-    """Every method at its best ratio, by group of places."""
+def table(shown=None):
+    """Methods at their best ratio, by group of places."""
     def cell(group, method):
         row = found().get((group, *method))
         return score(row) if row and group == 'other light' else '%.2f' % float(row['at_5']) if row else '–'
-    lines = [[name(method), found()['other light', *method]['used'], *(cell(group, method) for group in columns())] for method in methods()]
-    heads = ['%s, places: %s' % (group, found()[group, *CHAIN]['places']) for group in columns()]
-    return summaries.table(['points, descriptor', 'ratio', *heads], lines)
+
+    def head(group):
+        return '%s, places: %s' % (group if group == 'other light' else '%s (%s)' % (', '.join(GROUPS[group]), group), found()[group, *CHAIN]['places'])
+    lines = [[name(method), found()['other light', *method]['used'], *(cell(group, method) for group in columns())] for method in shown or methods()]
+    return summaries.table(['points, descriptor', 'ratio', *map(head, columns())], lines)
+
+
+def table_of_best():
+    """The same of UNIVERSAL and the best other descriptor at each detector's points."""
+    best = {}
+    for method in methods():
+        if method[1] != 'IIB SMALL':
+            best.setdefault((method[0], method[1] == 'IIB UNIVERSAL'), method)
+    return table(list(best.values()))
 
 
 def kinds():
@@ -155,23 +166,19 @@ def less(row):
     return '%.2f (%.2f to %.2f)' % tuple(float(row[column]) + 0. for column in ('less', 'less_low', 'less_high'))
 
 
-def lead(first, second, group='other light'):
-    return float(found()[(group, *first)]['at_5']) - float(found()[(group, *second)]['at_5'])
-
-
 def claim():
     """README's sentences on poses: the chain, the best that others make, and what of the lead is the detector's and what the descriptor's."""
-    ours, group = found()['other light', *CHAIN], 'other light'
-    others = [found()[group, *method] for method in methods() if not method[1].startswith('IIB')]
-    same, elsewhere = (max((row for row in others if (row['detector'] == 'Hessian') == hessian), key=lambda row: float(row['at_5'])) for hessian in (True, False))
-    steps = [[lead(('Hessian', descriptor), ('SIFT normalized', descriptor)) for descriptor in ('IIB UNIVERSAL', 'SIFT')],
-             [lead((points, 'IIB UNIVERSAL'), (points, 'SIFT')) for points in ('Hessian', 'SIFT normalized')]]
+    def value(row):
+        return float(row['at_5'])
+    bits, floats = ({points: max((row for key, row in found().items() if key[:2] == ('other light', points) and key[2] in names), key=value)
+                     for points in ('Hessian', 'SIFT normalized')} for names in (('IIB UNIVERSAL',), ('SIFT', 'RootSIFT')))
+    (ours, at_other), (same, other) = bits.values(), floats.values()
+    steps = [[value(of['Hessian']) - value(of['SIFT normalized']) for of in (bits, floats)], [value(ours) - value(same), value(at_other) - value(other)]]
     return ('On rendered places in other light, with 1000 points an image, the chain scores %s. All methods have the same refinement and estimator,\n'
-            "and each the ratio that is best on other places. %s at `HessianDetector`'s points has %s; the difference, chain minus that, is %s.\n"
-            'The best elsewhere is %s at points of %s, %s, a difference of %s. Of the lead over SIFT at normalized points (%.2f) the detector\n'
-            'brings %.2f and the descriptor %.2f on average ([all](doc/results/README.md#poses)).' % (
-                score(ours), same['descriptor'], score(same), less(same), elsewhere['descriptor'], POINTS.get(elsewhere['detector'], elsewhere['detector']), score(elsewhere),
-                less(elsewhere), lead(CHAIN, OTHER), *map(summaries.mean, steps)))
+            "and each the ratio that is best on other places. %s (512 bytes) at `HessianDetector`'s points has %s; the difference, chain minus that, is %s.\n"
+            'At normalized SIFT\'s points %s has %s, a difference of %s. Of that lead (%.2f) the detector brings %.2f and the\n'
+            'descriptor %.2f on average ([all](doc/results/README.md#poses)).' % (
+                score(ours), same['descriptor'], score(same), less(same), other['descriptor'], score(other), less(other), value(ours) - value(other), *map(summaries.mean, steps)))
 
 
 def by_ratio():
@@ -216,9 +223,7 @@ def neighbours():
             return '–'
         visible, repeated, nearest = (float(row[column]) for column in ('visible', 'repeated', 'nearest'))
         return '%.0f: %.0f %%, %.0f %%' % (nearest, 100 * repeated / visible, 100 * nearest / max(repeated, 1e-9))
-    names = [key for key in dict.fromkeys(key[0] for key in counted())]
-    order = columns() + sorted(of for of in names if ': ' in of and of[:10] != 'neighbours')
-    order.sort(key=lambda of: of.startswith('baseline: above'))
+    order = columns() + sorted((of for of in {key[0] for key in counted()} if of.startswith(('baseline: ', 'light: '))), key=lambda of: (of[0], 'above' in of, of))
     lines = [[of, counted()[of, *CHAIN, '1000']['pairs'], *(cell(of, method) for method in COUNTED)] for of in order]
     lines += [['other light, %s points' % points, counted()['other light', *CHAIN, points]['pairs'], *(cell('other light', method, points) for method in COUNTED)] for points in ('500', '2000')]
     return summaries.table(['1000 points', 'pairs', *map(name, COUNTED)], lines)
@@ -233,7 +238,7 @@ def pairs():
             '`PRESET_UNIVERSAL` was trained on walks through another %s, in the same lights; on no %s, and nothing of the library on a %s.\n'
             '%sGenerators of places are %d, not %s: places of one kind share materials and shapes, so intervals, which\n'
             'are over places, say how other places of these kinds would do, not how other kinds would.' % (
-                row['pairs'], row['places'], kinds_of('trained on the kind'), kinds_of('same renderer'), kinds_of('kinds of no other use'),
+                row['pairs'], row['places'], kinds_of('trained on the kind'), kinds_of('same renderer'), kinds_of('new kinds'),
                 '*Other renderer*: %s, by Cycles. ' % ' and '.join('a ' + of for of in rendered) if rendered else '', sum(len(of) for group, of in GROUPS.items() if group != 'other renderer'), row['places']))
 
 
@@ -257,8 +262,8 @@ def limit():
         return 100 * repeated / visible, 100 * nearest / repeated
     ours, sift = shares('other light'), shares('other light', method=('Hessian', 'SIFT'))
     return ("Of the chain's points that the other image shows, %.0f of 100 are detected there, too, and %.0f of 100 of those have the right nearest neighbour, where SIFT's descriptor at the\n"
-            'same points has %.0f. By night it is %.0f and %.0f, with 500 points %.0f and %.0f, with 2000 %.0f and %.0f. So the detector loses more than the descriptor.' % (
-                *ours, sift[1], *shares('light: night'), *shares('other light', '500'), *shares('other light', '2000')))
+            'same points has %.0f. By night it is %.0f and %.0f, with 500 points %.0f and %.0f, with 2000 %.0f and %.0f. So the %s loses more than the %s.' % (
+                *ours, sift[1], *shares('light: night'), *shares('other light', '500'), *shares('other light', '2000'), *('detector', 'descriptor')[::1 if ours[0] < ours[1] else -1]))
 
 
 def run(file):

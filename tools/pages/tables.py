@@ -11,6 +11,7 @@ import re
 import sys
 
 import controls
+import questions
 import summaries
 from releases import artifacts, fuzzing, night
 from summaries import table
@@ -568,6 +569,7 @@ ALL = {function.__name__: function for function in (
     detected_points, uncertainty, night, artifacts)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
-ALL.update({'poses': controls.table, 'pose_kinds': controls.kinds, 'pose_ratios': controls.by_ratio, 'pose_noise': controls.noise, 'pose_neighbours': controls.neighbours,
+ALL.update({'poses': controls.table_of_best, 'pose_all': controls.table, 'pose_kinds': controls.kinds, 'pose_ratios': controls.by_ratio, 'pose_noise': controls.noise, 'pose_neighbours': controls.neighbours,
             'pose_pairs': controls.pairs, 'pose_cause': controls.cause, 'pose_limit': controls.limit, 'wrong_poses': controls.wrong})
 ALL.update({name + '_run': functools.partial(controls.run, file + '.csv') for name, file in (('pose', 'controls'), ('estimator', 'estimators'), ('uncertainty', 'uncertainty'))})
+ALL.update(questions.ALL)
