@@ -20,7 +20,7 @@ SAMPLES = 12  # rays a pixel; the noise that they leave counts as a sensor's
 # Sun: degrees of azimuth and altitude, strength, tint; strength and tint of the sky; of the lamps.
 SUN = {"noon": (215, 55, 4, (1, .95, .86), 1.0, (.55, .7, 1), 0), "overcast": (215, 60, 0, (1, 1, 1), 1.3, (.8, .85, .9), 0),
        "dusk": (40, 6, 1.4, (1, .5, .25), .22, (.6, .5, .6), .3), "night": (160, 40, .03, (.6, .75, 1), .012, (.4, .5, 1), 1)}
-PLACES = {"court": Scene(0.8, None, [(-0.8, 1.7, 0, -5, 4), (0.5, 1.7, 2, 6, 5), (-0.4, 1.75, 4, -8, 4), (0.6, 1.7, 6, 4, 5)], []),
+PLACES = {"court": Scene(1.0, None, [(-0.8, 1.7, 0, -5, 4), (0.5, 1.7, 2, 6, 5), (-0.4, 1.75, 4, -8, 4), (0.6, 1.7, 6, 4, 5)], []),
           "store": Scene(0.75, None, [(-0.7, 1.65, 0, 5, 0), (0.4, 1.7, 1.6, -7, 1), (-0.3, 1.65, 3.2, 8, 0), (0.4, 1.7, 4.8, -4, 1)], [])}
 SCENES.update(PLACES)
 
@@ -121,7 +121,7 @@ def look(pose, focal, size):
     bpy.ops.object.camera_add()
     scene.camera = bpy.context.object
     scene.camera.matrix_world = mathutils.Matrix(matrix)
-    scene.camera.data.sensor_width, scene.camera.data.lens = 1, focal
+    scene.camera.data.sensor_width, scene.camera.data.lens = 36, 36 * focal  # millimetres; a lens has one at least
     scene.render.resolution_x, scene.render.resolution_y = size
     return matrix
 
@@ -139,10 +139,15 @@ def depth(matrix, camera, size):
 
 
 def render(name, seed, light, pose, frame, target, size):
-    if target.exists():
+    beside = target.parents[1] / "depth" / target.name
+    if target.exists() and beside.exists():
         return
     build(name, seed, light)
     matrix = look(pose, SCENES[name].focal, size)
+    if not beside.exists():
+        write(beside, depth(matrix, intrinsics(name, *size), size))
+    if target.exists():
+        return
     scene = bpy.context.scene
     scene.render.engine, scene.cycles.samples, scene.cycles.seed = "CYCLES", SAMPLES, frame
     scene.cycles.max_bounces, scene.cycles.use_denoising = 3, False
@@ -153,9 +158,6 @@ def render(name, seed, light, pose, frame, target, size):
     bpy.ops.render.render(write_still=True)
     picture = cv2.imread(scene.render.filepath)
     pathlib.Path(scene.render.filepath).unlink()
-    beside = target.parents[1] / "depth" / target.name
-    beside.parent.mkdir(parents=True, exist_ok=True)
-    write(beside, depth(matrix, intrinsics(name, *size), size))
     write(target, sensed(picture, name, light, frame))
     print(target, flush=True)
 
