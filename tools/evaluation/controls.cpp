@@ -18,10 +18,10 @@ namespace {
 const float RATIOS[] = {.8f, .85f, .9f, .95f};
 const int POINTS[] = {500, 1000, 2000};  // that neighbours are counted of
 const double NOISE = 14;                 // grey levels, of the second image
-const double CLIP = 2;                // of CLAHE, OpenCV's tutorials' choice
-const double DEPTH_STEP = .004;       // metres; tools/synthetic/common.inc
-const double DEPTH_TOLERANCE = .02;   // parts of the depth
-const double SIFT_SIGMA = 1.6;        // of SIFT's first level, pixels
+const double CLIP = 2;                   // of CLAHE, OpenCV's tutorials' choice
+const double DEPTH_STEP = .004;          // metres; tools/synthetic/common.inc
+const double DEPTH_TOLERANCE = .02;      // parts of the depth
+const double SIFT_SIGMA = 1.6;           // of SIFT's first level, pixels
 const int SIFT_LAYERS = 3, BLOCK = 16;
 
 /** SIFT's descriptor at another detector's points. SIFT reads the level of its pyramid from the keypoint, which these do not have: it is that
@@ -146,12 +146,14 @@ Neighbours neighboursOf(const ViewPair& pair, const Described& r, const Describe
     {
         const cv::Point2f p = r.keypoints[match.queryIdx].pt;
         const double d = depth.at<float>(cvRound(p.y), cvRound(p.x));
-        const cv::Vec3d x = pair.targetCamera * (pair.rotation * (pair.referenceCamera.inv() * cv::Vec3d(p.x, p.y, 1) * d) +
-                                                        pair.translation);
+        const cv::Vec3d x = pair.targetCamera *
+                            (pair.rotation * (pair.referenceCamera.inv() * cv::Vec3d(p.x, p.y, 1) * d) +
+                                    pair.translation);
         const cv::Point2d q(x[0] / x[2], x[1] / x[2]);
         if (d <= 0 || x[2] <= 0 || !cv::Rect(0, 0, depth.cols - 1, depth.rows - 1).contains(q))
             continue;
-        if (std::abs(targetDepth.at<float>(cvRound(q.y), cvRound(q.x)) - x[2]) > DEPTH_TOLERANCE * x[2] + DEPTH_STEP)
+        if (std::abs(targetDepth.at<float>(cvRound(q.y), cvRound(q.x)) - x[2]) >
+                DEPTH_TOLERANCE * x[2] + DEPTH_STEP)
             continue;
         const auto near = [&](const cv::KeyPoint& k) { return cv::norm(cv::Point2d(k.pt) - q) <= tolerance; };
         count.visible++;
@@ -195,7 +197,8 @@ int controls(const Options& options, const std::vector<ImagePair>&)
                 const std::string tag = cv::format(" %d points %d noise %g", points, which, noise);
                 for (const Detector& detector : methods(options, points, which))
                 {
-                    const DescribedImages::Result r = described.get(detector, reference, pair.referenceFile + tag),
+                    const DescribedImages::Result r = described.get(
+                                                          detector, reference, pair.referenceFile + tag),
                                                   t = described.get(detector, other, pair.targetFile + tag);
                     for (size_t i = 0; i < r->size(); i++)
                     {
@@ -217,13 +220,14 @@ int controls(const Options& options, const std::vector<ImagePair>&)
                     const Points points =
                             refined(reference, other, underRatio(matches, ratios, ratio), from, to, true);
                     Fields row = key;
-                    row.insert(
-                            row.end(), {text(noise), text(ratio), text(byFindRelativePose(points, pair).error),
-                                               std::to_string(points.reference.size())});
+                    row.insert(row.end(),
+                            {text(noise), text(ratio), text(byFindRelativePose(points, pair).error),
+                                    std::to_string(points.reference.size())});
                     poses.append(row);
                 }
             };
-            const auto countNeighbours = [&](int points, Fields row, const Described& from, const Described& to) {
+            const auto countNeighbours = [&](int points, Fields row, const Described& from,
+                                                 const Described& to) {
                 const Neighbours n = neighboursOf(pair, from, to, depth, targetDepth, options.tolerance);
                 row.insert(row.end(), {std::to_string(points), text(cv::norm(pair.translation)),
                                               text(contrastOf(target)), std::to_string(n.visible),

@@ -223,7 +223,7 @@ def neighbours():
             return '–'
         visible, repeated, nearest = (float(row[column]) for column in ('visible', 'repeated', 'nearest'))
         return '%.0f: %.0f %%, %.0f %%' % (nearest, 100 * repeated / visible, 100 * nearest / max(repeated, 1e-9))
-    order = columns() + sorted((of for of in {key[0] for key in counted()} if of.startswith(('baseline: ', 'light: '))), key=lambda of: (of[0], 'above' in of, of))
+    order = [of for of in columns() if (of, *CHAIN, '1000') in counted()] + sorted((of for of in {key[0] for key in counted()} if of.startswith(('baseline: ', 'light: '))), key=lambda of: (of[0], 'above' in of, of))
     lines = [[of, counted()[of, *CHAIN, '1000']['pairs'], *(cell(of, method) for method in COUNTED)] for of in order]
     lines += [['other light, %s points' % points, counted()['other light', *CHAIN, points]['pairs'], *(cell('other light', method, points) for method in COUNTED)] for points in ('500', '2000')]
     return summaries.table(['1000 points', 'pairs', *map(name, COUNTED)], lines)

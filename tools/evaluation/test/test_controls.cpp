@@ -9,7 +9,6 @@
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
 
-
 namespace {
 using namespace iib_tools;
 
@@ -19,9 +18,9 @@ const int SHIFT = 24;  // pixels between the images
 std::map<std::string, std::vector<int>> neighboursIn(const std::string& out)
 {
     std::map<std::string, std::vector<int>> found;
-    for (const Fields& row : readRows(out + "/neighbours.csv",
-                 {"set", "sequence", "target", "detector", "descriptor", "points", "baseline", "contrast",
-                         "visible", "repeated", "nearest"}))
+    for (const Fields& row : readRows(
+                 out + "/neighbours.csv", {"set", "sequence", "target", "detector", "descriptor", "points",
+                                                  "baseline", "contrast", "visible", "repeated", "nearest"}))
         found[row[3] + " " + row[4] + " " + row[5]] = {
                 std::atoi(row[8].c_str()), std::atoi(row[9].c_str()), std::atoi(row[10].c_str())};
     return found;
@@ -36,7 +35,8 @@ TEST(Controls, neighbours_by_known_depth)
     cv::resize(wall, wall, cv::Size(320 + SHIFT, 192), 0, 0, cv::INTER_CUBIC);
     folder.makeFolder("wall_2/map/images");
     folder.makeFolder("wall_2/map/depth");
-    folder.write("wall_2/map/cameras.txt", cv::format("1 PINHOLE 320 192 %d %d 160.5 96.5\n", SHIFT * 8, SHIFT * 8));
+    folder.write("wall_2/map/cameras.txt",
+            cv::format("1 PINHOLE 320 192 %d %d 160.5 96.5\n", SHIFT * 8, SHIFT * 8));
     folder.write("wall_2/map/poses.txt", "a 0 0 0 0 0 0 1\nb 0.5 0 0 0 0 0 1\n");
     for (int i : {0, 1})
     {
@@ -52,7 +52,8 @@ TEST(Controls, neighbours_by_known_depth)
     EXPECT_EQ(0, evaluate(options));
     const auto found = neighboursIn(options.out);
     EXPECT_EQ(12u + 3 * 3, found.size());  // twelve methods, three of them by other numbers of points
-    for (const char* method : {"Hessian IIB UNIVERSAL 200", "Hessian SIFT 200", "SIFT normalized RootSIFT 200", "SIFT CLAHE SIFT 200"})
+    for (const char* method : {"Hessian IIB UNIVERSAL 200", "Hessian SIFT 200",
+                 "SIFT normalized RootSIFT 200", "SIFT CLAHE SIFT 200"})
     {
         ASSERT_EQ(1u, found.count(method)) << method;
         const std::vector<int>& counts = found.at(method);
@@ -62,8 +63,9 @@ TEST(Controls, neighbours_by_known_depth)
     }
     std::set<std::string> ratios;
     size_t rows = 0;
-    for (const Fields& row : readRows(options.out + "/controls.csv",
-                 {"set", "sequence", "target", "detector", "descriptor", "noise", "ratio", "error", "matches"}))
+    for (const Fields& row :
+            readRows(options.out + "/controls.csv", {"set", "sequence", "target", "detector", "descriptor",
+                                                            "noise", "ratio", "error", "matches"}))
     {
         ratios.insert(row[6]);
         rows++;
