@@ -138,7 +138,7 @@ def table(shown=None):
         return score(row) if row and group == 'other light' else '%.2f' % float(row['at_5']) if row else '–'
 
     def head(group):
-        return '%s, places: %s' % (group if group == 'other light' else '%s (%s)' % (', '.join(GROUPS[group]), group), found()[group, *CHAIN]['places'])
+        return '%s, places: %s' % (group if group == 'other light' else '%s (%s)' % (', '.join(of for of in GROUPS[group] if (of, *CHAIN) in found()), group), found()[group, *CHAIN]['places'])
     lines = [[name(method), found()['other light', *method]['used'], *(cell(group, method) for group in columns())] for method in shown or methods()]
     return summaries.table(['points, descriptor', 'ratio', *map(head, columns())], lines)
 
