@@ -132,8 +132,9 @@ def _parser() -> _Parser:
     command.add_argument('reference')
     command.add_argument('images', nargs='+', help='of a plane, or from the same place: files, folders, patterns; those that are done stay')
     command.add_argument('--out', required=True, help='folder to write; older results there are replaced')
-    _choice(command, '--model', AlignmentModel.__members__, default='HOMOGRAPHY',
-            help='the simplest one that is true of the images gives the smallest errors (%(default)s)')
+    _choice(command, '--model', AlignmentModel.__members__, default='AUTO', help='AUTO takes the simplest one that is true (%(default)s)')
+    command.add_argument('--chain', action='store_true', help='the images are a series: what has no transform with the reference is aligned '
+                         'through its neighbours')
     _choice(command, '--format', FORMATS, help="of what is written (that of each image's file)")
     command.add_argument('--crop', action='store_true', help='write what all show, instead of what the reference shows')
     _choice(command, '--interpolation', INTERPOLATIONS, default='LINEAR', help='(%(default)s)')

@@ -31,7 +31,7 @@ from opencv_iib.views import rotation_and_scale
 
 CORNERS = ('top_left', 'top_right', 'bottom_right', 'bottom_left')
 HEADER = ['image', 'verdict', 'matches', *(f'error_{corner}' for corner in CORNERS),
-          *(f't{row}{column}' for row in '123' for column in '123'), 'file']
+          *(f't{row}{column}' for row in '123' for column in '123'), 'file', 'model']
 PAGE = '''<!DOCTYPE html>
 <html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Aligned with {reference}</title>
 <style>body {{ font: 16px sans-serif; margin: 2em auto; max-width: {width}px; padding: 0 1em; background: #1c1a20; color: #ebebeb }}
@@ -59,7 +59,7 @@ class Aligned(NamedTuple):
     """What became of an image."""
 
     name: str  #: path, as it was given
-    verdict: str  #: 'aligned', or why it cannot be read or laid onto the reference
+    verdict: str  #: 'aligned', 'aligned through NAME', or why it cannot be read or laid onto the reference
     matches: int = 0  #: that agree with the transform
     errors: Sequence[float] = ()  #: standard deviations of the places of its corners in pixels, in the order of CORNERS
     transform: Sequence[float] = ()  #: 3 x 3, row by row: from its pixels to those of the reference
@@ -67,12 +67,16 @@ class Aligned(NamedTuple):
     size: Sequence[int] = ()  #: its width and height; none if it cannot be read
     rotation: float = 0  #: degrees by which it is rotated against the reference, clockwise, besides EXIF's orientation; 0: less than 8
     scale: float = 1  #: of its pixels by the reference's; 1: less than a fifth more or less
+    model: str = ''  #: name of the AlignmentModel of the transform
+    note: str = ''  #: a sentence about the transform, mostly ''
 
     def __str__(self) -> str:
         if not self.file:
             return self.verdict
         seen = f', scale {self.scale:.2f}, rotated by {round(self.rotation) % 360} degrees' if (self.rotation, self.scale) != (0, 1) else ''
-        return f'{self.matches} matches agree, its corners are known to {max(self.errors):.2f} pixels{seen}'
+        through = self.verdict[len('aligned'):]
+        return (f'{self.matches} matches agree{through}, its corners are known to {max(self.errors):.2f} pixels ({self.model.lower()}){seen}'
+                + (f'; {self.note}' if self.note else ''))
 
 
 class _Options(NamedTuple):
@@ -85,6 +89,7 @@ class _Options(NamedTuple):
     format: Optional[str]
     crop: bool
     interpolation: str
+    chain: bool
 
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
@@ -93,9 +98,9 @@ class _Options(NamedTuple):
         check_choice(self.interpolation, 'interpolation', INTERPOLATIONS)
 
 
-def align(reference: Path, images: Sequence[Path], out: Path, model: int = AlignmentModel.HOMOGRAPHY, exif: bool = True,
+def align(reference: Path, images: Sequence[Path], out: Path, model: int = AlignmentModel.AUTO, exif: bool = True,
           mask: Optional[Path] = None, max_size: int = 0, format: Optional[str] = None, crop: bool = False, interpolation: str = 'LINEAR',
-          workers: Optional[int] = None, log: Callable[[str], None] = note) -> list[Aligned]:
+          chain: bool = False, workers: Optional[int] = None, log: Callable[[str], None] = note) -> list[Aligned]:
     """Aligns images with a reference, and writes them as its camera would see them, in their own depth, channels and pages: NAME.png, .jpg or
     .tif, ``transforms.csv``, ``align.json``, and ``index.html``, in which a slider moves the border between the reference and each.
 
@@ -111,6 +116,8 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     :param format: one of FORMATS; None: that of each image's file, or PNG, or TIFF where that alone holds all of it.
     :param crop: write what all that are aligned show, instead of what the reference shows.
     :param interpolation: one of INTERPOLATIONS.
+    :param chain: the images are a series, such as exposures or years: one that the reference has no transform with is aligned through the image
+        before or after it, and their errors add up.
     :param workers: threads; None for one a core.
     :param log: gets a line about files that cv2 does not read, and about pages that are left out, since they differ from the first one.
     :return: of each image but the reference, in the order of `images`; the table and the page have 2 before 10 and b before C.
@@ -118,12 +125,15 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     :raises FileExistsError: for a folder with other files, or with an image to be aligned.
     """
     reference, out = os.fspath(reference), os.fspath(out)
-    options = _Options(model, exif, None if mask is None else os.path.abspath(mask), max_size, format, crop, interpolation)
+    options = _Options(model, exif, None if mask is None else os.path.abspath(mask), max_size, format, crop, interpolation, chain)
     options.check()
     crew, masks = Threads(thread_count(workers)), Masks(options.mask)
     check_images(reference)
     check_folder(out, (reference,))
-    paths = [path for path in _expanded(images, out, log) if not is_same(path, reference)]
+    series = _expanded(images, out, log)
+    paths = [path for path in series if not is_same(path, reference)]
+    if len(paths) == len(series):
+        series = [reference, *series]
     if not paths:
         raise ValueError(f'no image to align but the reference, {reference}')
     check_folder(out, (*paths, *masks.check([os.path.basename(path) for path in (reference, *paths)])))
@@ -142,13 +152,18 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
             if part not in (None, old_part):
                 results.remove([STATE])
 
+        def do(job: Callable[[str], Aligned], missing: list[str]) -> None:
+            done.update(in_parallel(job, missing, crew))
+
         def align_one(path: str) -> Aligned:
             found = work.align(path, names[path], part)
             progress.step()
             return found
         forget()
         try:
-            done.update(in_parallel(align_one, [path for path in paths if path not in done], crew))
+            do(align_one, [path for path in paths if path not in done])
+            if chain:
+                _chain(work, series, done, do)
             part = part or _common(work.whole, done.values())
         except (Exception, KeyboardInterrupt) as e:
             if not done or part is None:
@@ -196,6 +211,19 @@ def _expanded(images: Sequence[Path], out: str, log: Callable[[str], None]) -> l
     if all(paths.values()):
         check_folder(out, paths)
     return [path for path, left_out in paths.items() if not left_out]
+
+
+def _chain(work: _Work, series: Sequence[str], done: dict[str, Aligned], do: Callable[[Callable[[str], Aligned], list[str]], None]) -> None:
+    """Aligns what has no transform with the reference through its neighbours in the series, outwards from those that have one."""
+    tried: set[tuple[str, str]] = set()
+    while True:
+        through = {path: other for first, second in zip(series, series[1:]) for path, other in ((first, second), (second, first))
+                   if path in done and done[path].size and not done[path].transform and other in done and done[other].transform
+                   and (path, other) not in tried}
+        if not through:
+            return
+        tried.update(through.items())
+        do(lambda path: work.align_through(done[path], done[through[path]]), list(through))
 
 
 def _known(out: str, settings: list[Any], stamps: dict[str, str]) -> tuple[dict[str, Aligned], Optional[list[int]]]:
@@ -340,15 +368,35 @@ class _Work:
             view = self._view(path, self._reference.factor if self._options.model == AlignmentModel.TRANSLATION else 0)
         except (ValueError, OSError) as e:
             return Aligned(path, getattr(e, 'strerror', None) or str(e))
-        found = self._aligner.align(view.grey, view.mask)
+        aligned = self._aligned(self._aligner, self._reference, view, path)
+        return aligned if part is None or not aligned.transform else self._written(view, aligned, name, part)
+
+    def _aligned(self, aligner: ImageAligner, onto: _View, view: _View, path: str) -> Aligned:
+        found = aligner.align(view.grey, view.mask)
         if not found.found:
             return Aligned(path, found.reason, len(found.matches), size=view.size)
-        transform = self._reference.matrix @ found.transform @ np.linalg.inv(view.matrix)
+        transform = onto.matrix @ found.transform @ np.linalg.inv(view.matrix)
         transform /= transform[2, 2]
-        errors = view.turn.corners(found.error.ravel()) * self._reference.factor
-        aligned = Aligned(path, 'aligned', len(found.matches), errors.tolist(), transform.ravel().tolist(), '', view.size,
-                          *_rotation_and_scale(found.transform, view.grey.shape))
-        return aligned if part is None else self._written(view, aligned, name, part)
+        errors = view.turn.corners(found.error.ravel()) * onto.factor
+        model = found.simplest if self._options.model == AlignmentModel.AUTO else AlignmentModel(self._options.model)
+        return Aligned(path, 'aligned', len(found.matches), errors.tolist(), transform.ravel().tolist(), '', view.size,
+                       *_rotation_and_scale(found.transform, view.grey.shape), model.name, found.note)
+
+    def align_through(self, image: Aligned, other: Aligned) -> Aligned:
+        """An image that has no transform with the reference, by that of another image and theirs; where they have none, as it was."""
+        onto = self._view(other.name)
+        view = self._view(image.name, onto.factor if self._options.model == AlignmentModel.TRANSLATION else 0)
+        found = self._aligned(ImageAligner(onto.grey, self._options.model, onto.mask), onto, view, image.name)
+        if not found.transform:
+            return image
+        to_other, to_reference = (np.reshape(each.transform, (3, 3)) for each in (found, other))
+        transform = to_reference @ to_other
+        transform /= transform[2, 2]
+        width, height = view.size
+        errors = [float(np.hypot(error * _stretch(to_reference, to_other @ np.array([x, y, 1.])), max(other.errors)))
+                  for error, (x, y) in zip(found.errors, ((0, 0), (width - 1, 0), (width - 1, height - 1), (0, height - 1)))]
+        return found._replace(verdict=f'aligned through {os.path.basename(other.name)}', errors=errors, transform=transform.ravel().tolist(),
+                              scale=found.scale * other.scale, rotation=(found.rotation + other.rotation) % 360)
 
     def write(self, path: str, aligned: Aligned, name: str, part: list[int]) -> Aligned:
         """The same for one whose transform is known."""
@@ -407,6 +455,13 @@ def _rotation_and_scale(transform: NDArray[np.float64], shape: Sequence[int]) ->
     return rotation_and_scale(np.linalg.inv(np.column_stack(columns)))
 
 
+def _stretch(transform: NDArray[np.float64], point: NDArray[np.float64]) -> float:
+    """By how much a transform enlarges a small distance at a point."""
+    x, y, w = transform @ point / point[2]
+    derivative = (transform[:2, :2] - np.outer((x, y), transform[2, :2]) / w) / w
+    return float(np.linalg.norm(derivative, 2))
+
+
 def _row(each: Aligned) -> list[str]:
     numbers = [f'{value:.3f}' for value in each.errors] + [f'{value:.9g}' for value in each.transform]
-    return [each.name, each.verdict, str(each.matches), *(numbers or [''] * 13), each.file]
+    return [each.name, each.verdict, str(each.matches), *(numbers or [''] * 13), each.file, each.model]

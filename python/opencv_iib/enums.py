@@ -63,9 +63,10 @@ class Preset(IntEnum, metaclass=_OnlyMembers):
 
 
 class AlignmentModel(IntEnum, metaclass=_OnlyMembers):
-    """Transforms between two images, each with more freedom than the one before: rotation and scale, shear, perspective."""
+    """Transforms between two images, each with more freedom than the one before: rotation and scale, shear, perspective. AUTO: the simplest one
+    that is true."""
 
-    TRANSLATION, SIMILARITY, AFFINE, HOMOGRAPHY = range(4)
+    TRANSLATION, SIMILARITY, AFFINE, HOMOGRAPHY, AUTO = range(5)
 
 
 class Mode(IntEnum, metaclass=_OnlyMembers):

@@ -47,6 +47,8 @@ class Alignment(_Alignment):
     """
 
     reason: str = ''  #: why it is not found, a sentence
+    simplest: AlignmentModel  #: if found: that is true of the images; of AUTO the one of the transform
+    note: str = ''  #: a sentence, such as of a part that moved otherwise; mostly ''
 
 
 def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:
@@ -55,7 +57,7 @@ def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:
 
 
 def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: ArrayLike, cameraMatrix2: ArrayLike,
-                     scale: float = 0) -> RelativePose:
+                     scale: float = 0, covariances: Optional[ArrayLike] = None) -> RelativePose:
     """Finds where camera 2 stands, seen from camera 1, from matched points of which many may be wrong.
 
     As ``cv2.iib.findRelativePose``. Points must be free of lens distortion:
@@ -66,12 +68,15 @@ def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: Arra
     :param cameraMatrix1: 3 x 3, [fx 0 cx; 0 fy cy; 0 0 1], of camera 1.
     :param cameraMatrix2: of camera 2.
     :param scale: pixels: about the standard deviation of the points; 0: the residuals tell it.
-    :return: a tuple (found, R, t, inliers, covariance), with its `reason`. Not found: the matches that agree are not more than chance, or
+    :param covariances: N x 3, pixels^2: of the places of the matches, xx, xy, yy, as refineMatches and propagateMatches give them. A match that
+        was located less exactly counts less in the choice among poses.
+    :return: a tuple (found, R, t, inliers, covariance), with its `reason`. Not found: the matches that agree could be random, or
         two poses explain them as well, as of a plane.
     :raises opencv_iib.error: for arrays of other shapes, points that are not one for one, and a scale below 0.
     """
+    rows = np.empty((0, 3)) if covariances is None else _numbers(covariances, 'covariances')
     pose, reason = _core.findRelativePose(_numbers(points1, 'points1'), _numbers(points2, 'points2'), _numbers(cameraMatrix1, 'cameraMatrix1'),
-                                          _numbers(cameraMatrix2, 'cameraMatrix2'), number(scale, 'scale'))
+                                          _numbers(cameraMatrix2, 'cameraMatrix2'), number(scale, 'scale'), rows)
     result = RelativePose(*pose)
     result.reason = reason
     return result
@@ -85,7 +90,7 @@ def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentMo
     ``cv2.warpPerspective(image, transform, (width, height))`` has the image as the reference's camera would see it.
 
     :param reference: as IIBDescriptorExtractor takes it; so is `image`.
-    :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors.
+    :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors, and AUTO chooses it.
     :param referenceMask: H x W uint8, 0 where no points are to be found in the reference; so is `mask` of the image.
     :return: a tuple (found, transform, error, matches), with its `reason`. Not found: the matches are not more than chance, they span a small
         part of what both show, as a logo does, or the images differ by more than the model.
@@ -115,9 +120,11 @@ class ImageAligner:
 
         :param mask: of the image.
         :raises opencv_iib.error: for an image of another type, and a mask of another size or type."""
-        alignment, reason = self._core.align(as_image(image), as_mask(mask))
+        alignment, reason, simplest, note = self._core.align(as_image(image), as_mask(mask))
         result = Alignment(*alignment)
-        result.reason = reason
+        result.reason, result.note = reason, note
+        if result.found:
+            result.simplest = AlignmentModel(simplest)
         return result
 
 

@@ -55,12 +55,12 @@ std::optional<cv::Mat> onlyIf(bool found, const cv::Mat& matrix)
 
 // Whether there is a pose, R, t, marks of the inliers, covariance; and why there is none.
 auto findRelativePose(const cv::Mat& points1, const cv::Mat& points2, const cv::Mat& camera1,
-        const cv::Mat& camera2, double scale)
+        const cv::Mat& camera2, double scale, const cv::Mat& covariances)
 {
     cv::Mat R, t, inliers, covariance;
     cv::String reason;
     const bool found = cv::iib::findRelativePose(
-            points1, points2, camera1, camera2, R, t, inliers, scale, covariance, &reason);
+            points1, points2, camera1, camera2, R, t, inliers, scale, covariance, &reason, covariances);
     return std::make_tuple(
             std::make_tuple(found, onlyIf(found, R), onlyIf(found, t), inliers, onlyIf(found, covariance)),
             std::string(reason));
@@ -68,14 +68,15 @@ auto findRelativePose(const cv::Mat& points1, const cv::Mat& points2, const cv::
 
 typedef Held<cv::iib::ImageAligner> Aligner;
 
-// Whether they show the same, transform, deviations of the corners, matches that agree; and why not.
+// Whether they show the same, transform, deviations of the corners, matches that agree; why not; the simplest model, and a note.
 auto align(const Aligner& aligner, const cv::Mat& image, const cv::Mat& mask)
 {
     cv::Mat transform, error, matches;
-    cv::String reason;
-    const bool found = aligner->align(image, transform, error, matches, &reason, mask);
+    cv::String reason, note;
+    int simplest = 0;
+    const bool found = aligner->align(image, transform, error, matches, &reason, mask, &simplest, &note);
     return std::make_tuple(std::make_tuple(found, onlyIf(found, transform), onlyIf(found, error), matches),
-            std::string(reason));
+            std::string(reason), simplest, std::string(note));
 }
 
 typedef Held<cv::iib::ViewMatcher> ViewMatcher;

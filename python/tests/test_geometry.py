@@ -29,6 +29,9 @@ class RelativePose(unittest.TestCase):
         found, R, t, inliers, covariance = opencv_iib.findRelativePose(first, second, CAMERA, CAMERA)
         self.assertTrue(found)
         self.assertEqual(opencv_iib.findRelativePose(first, second, CAMERA, CAMERA).reason, '')
+        self.assertTrue(opencv_iib.findRelativePose(first, second, CAMERA, CAMERA, covariances=np.ones((len(first), 3))).found)
+        with self.assertRaisesRegex(opencv_iib.error, 'covariances'):
+            opencv_iib.findRelativePose(first, second, CAMERA, CAMERA, covariances=np.ones((2, 3)))
         np.testing.assert_allclose(R, np.eye(3), atol=1e-3)
         np.testing.assert_allclose(t, [[-1], [0], [0]], atol=3e-3)
         self.assertEqual((inliers.shape, covariance.shape), ((100, 1), (5, 5)))
@@ -56,6 +59,10 @@ class Alignment(unittest.TestCase):
         self.assertEqual((error.shape, matches.shape[1]), ((4, 1), 4))
         self.assertLess(error.max(), .2)
         np.testing.assert_allclose(matches[:, 2:] + [32, 16], matches[:, :2], atol=2)
+        chosen = opencv_iib.alignImages(picture, picture[16:, 32:] // 2 + 40, opencv_iib.AlignmentModel.AUTO)
+        np.testing.assert_allclose(chosen.transform, transform, atol=1e-9)
+        self.assertEqual((chosen.simplest, chosen.note), (opencv_iib.AlignmentModel.TRANSLATION, ''))
+        self.assertIn('TRANSLATION', opencv_iib.alignImages(picture, picture[16:, 32:] // 2 + 40).note)
 
     def test_other_pictures(self):
         alignment = opencv_iib.alignImages(*(texture(640, 480, seed=seed)[290:] for seed in (1, 2)))  # below their rectangle

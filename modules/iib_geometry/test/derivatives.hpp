@@ -57,7 +57,7 @@ void expectDerivatives(
         Numbers values;
         for (const cv::iib::Row<Step>& row : rows)
             values.push_back(row.r);
-        values.push_back(problem.loss(there, scale, DBL_MAX));
+        values.push_back(problem.loss(there, cv::iib::Loss{scale}, DBL_MAX));
         return values;
     };
     expectDerivatives(analytic, valuesAt, tolerance);

@@ -1,93 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opencv2/iib/alignment.hpp"
 
-#include "../verdict/parallax.hpp"
-#include "../pose/planar_problem.hpp"
 #include "../common/points.hpp"
-#include "spread.hpp"
-#include "../pose/uncertainty.hpp"
-#include "../verdict/verdict.hpp"
 #include "../verdict/support.hpp"
 #include "../views/view_search.hpp"
-#include "working_pair.hpp"
+#include "corner_errors.hpp"
+#include "judgement.hpp"
 
 namespace cv::iib {
 namespace {
 
-const double LEAST_SCALE = .25;   // by which matches count as agreeing, working pixels
-const double LEAST_SPREAD = .12;  // of what has points, that the agreeing matches span: a logo spans less
-const double LEAST_WHOLE = .05;   // of what both images have, whether it has points or not
-/* Of the cells that matches of any points would be in, those that agreeing ones are in. Captions and logos at two ends of a picture
-have .2 at most, pairs under other light .41 at least. */
-const double LEAST_SCATTER = .33;
-/* By which a model that is true is better than one that is not, as logarithms of likelihoods, for each number that it has more, and for each
-match. Noise and bent lenses have up to 3.9 of numbers, or .23 of matches; untrue models that are told as surer than they are 5.3 and .29
-(103 pairs under other light, moved by transforms of each kind). */
-const double LEAST_GAIN = 4.5, LEAST_GAIN_OF_MATCH = .25;
-const double MOST_PARALLAX = .25;  // of the places that agree may move as if the camera had moved
-const double LEAST_PARALLAX = 6;   // working pixels: shadows of another light move by less
-const int WORKING_SIZE = 1024;     // as HessianDetector has it
-const int FEATURES = 2000;         // of a view
-const int MOST_IMPROVED = 3;       // times
-const double MOST_TILT = 4;        // that models with a shear are searched for
-const double ANY = 1e3;            // deviation of a number of a transform
-
+const int WORKING_SIZE = 1024;    // as HessianDetector has it
+const int FEATURES = 2000;        // of a view
+const int MOST_IMPROVED = 3;      // times
+const double MOST_TILT = 4;       // that models with a shear are searched for
 const double LEAST_REFINED = .5;  // of the matches that agree at the working size
-/* Of a match's deviation: what light and lens shift in all matches alike, as far as pairs under other lamps and exposures show it
-(doc/uncertainty.md). */
-const double COMMON = .4;
-
-const char* const MODELS[] = {"TRANSLATION", "SIMILARITY", "AFFINE", "HOMOGRAPHY"};
-const char* const NAMES[] = {"a translation", "a similarity", "an affine transform", "a homography"};
-
-int countOf(const Verdict::Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); }
-
-//! A transform of two images' matches, in working pixels, and how they lie around it.
-struct Aligned
-{
-    PlanarProblem problem;
-    Fit<PlanarProblem> fit;
-    Verdict::Marks agree;
-    double limit;  //!< of those that agree
-
-    Aligned(const AlignedPoints& points, int model)
-        : problem(points.reference, points.image, model), fit(robustFit(problem, 0)),
-          limit(3 * std::max(fit.scale, LEAST_SCALE))
-    {
-        agree = within(limit, fit.squared);
-        agree.resize(problem.size());
-    }
-
-    int count() const { return countOf(agree); }
-};
-
-//! @param tried number of views in which the images were matched.
-bool isCertain(const Aligned& aligned, const Verdict& verdict, int tried)
-{
-    std::vector<double> limits;
-    for (double limit : {.5, 1., 2., 4.})
-        limits.push_back(limit * aligned.limit);
-    return verdict.logFalseAlarms(aligned.fit.squared,
-                   errorsOfWrongMatches(aligned.problem, aligned.fit.model), Verdict::FROM_POINT,
-                   aligned.problem.sampleSize(), limits) +
-                   std::log10((double)tried) <
-           Verdict::CERTAIN;
-}
-
-/** Standard deviations of the places of the image's corners, 4 x 1, CV_64F, working pixels.
-@param beside what parts of the images differ by from the transform. */
-Mat deviationsOf(const Aligned& aligned, const AlignedPoints& points, const std::vector<Point2d>& corners,
-        double beside)
-{
-    const Square<PlanarProblem::Step> covariance =
-            covarianceOf(aligned.problem, aligned.fit, partsOf(points.reference), ANY);
-    Mat deviations(4, 1, CV_64F);
-    for (int k = 0; k < 4; k++)
-        deviations.at<double>(k) =
-                std::hypot(aligned.problem.deviation(aligned.fit.model, covariance, corners[k]),
-                        std::hypot(std::sqrt(2) * COMMON * aligned.fit.scale, beside));
-    return deviations;
-}
 
 //! Pixels of the longer side at which upright images are matched, one after the other.
 std::vector<int> workingSizes(const Size& first, const Size& second)
@@ -98,106 +25,6 @@ std::vector<int> workingSizes(const Size& first, const Size& second)
             WORKING_SIZE / 2};  // blurred images, as of a focus stack, are sharper at half the size
 }
 
-//! The matches beside a transform by so much, working pixels, or more, that the camera's motion explains.
-Verdict::Marks movedBeside(
-        const Aligned& aligned, const AlignedPoints& points, double distance, const Verdict& verdict)
-{
-    return movedByParallax(points.reference, points.image, aligned.problem.inPixels(aligned.fit.model),
-            within(std::max(2 * aligned.limit, distance), aligned.fit.squared), aligned.limit, verdict);
-}
-
-/** By how much a part of the images is beside the transform, as by light that moves shadows or by a camera that moved little, working
-pixels; 0 if it is no larger than what makes no parallax. */
-double deviationBeside(const Aligned& aligned, const AlignedPoints& points)
-{
-    const Verdict verdict(points.image, points.reference);
-    const Verdict::Marks moved = movedBeside(aligned, points, 0, verdict);
-    if (verdict.places(moved) <= MOST_PARALLAX * verdict.places(aligned.agree))
-        return 0;
-    double sum = 0;
-    for (size_t i = 0; i < moved.size(); i++)
-        sum += moved[i] ? aligned.fit.squared[i] : 0;
-    return std::sqrt(sum / std::max(countOf(moved), 1));
-}
-
-/** Whether a model of more freedom explains the matches better than noise would let it: by the likelihood of the errors, as Cauchy's loss
-under the scale of the richer model has it. */
-bool isBetter(const Aligned& richer, const Aligned& aligned)
-{
-    const auto loss = [&](const Aligned& a) {
-        return a.problem.loss(a.fit.model, richer.limit / 3, std::numeric_limits<double>::max());
-    };
-    if (richer.fit.squared.empty())
-        return false;
-    const double gain = loss(aligned) - loss(richer);
-    return gain > LEAST_GAIN * (richer.problem.parameters() - aligned.problem.parameters()) &&
-           gain > LEAST_GAIN_OF_MATCH * richer.count();
-}
-
-struct Judgement
-{
-    std::string against;  //!< why the images have no such transform; empty if they have
-    bool isLast;          //!< whether another attempt can say nothing else
-};
-
-/** Why another model is that of the images; empty if this one is, or if the answer is doubtful.
-@param richer the transforms of more freedom, the one of most freedom last. */
-std::string reasonAgainstModel(
-        const Aligned& aligned, const std::vector<Aligned>& richer, const Verdict& verdict, int tried)
-{
-    const size_t model = ALIGN_HOMOGRAPHY - richer.size();
-    if (richer.empty() || !isBetter(richer.back(), aligned) || !isCertain(richer.back(), verdict, tried))
-        return "";
-    size_t k = 0;
-    while (isBetter(richer.back(), richer[k]))
-        k++;
-    const auto near = [&](const Aligned& a) { return countOf(within(richer[k].limit, a.fit.squared)); };
-    return format("the images differ by more than %s: %s agrees with %d matches in place of %d, and "
-                  "better",
-            NAMES[model], MODELS[model + 1 + k], near(richer[k]), near(aligned));
-}
-
-Judgement judge(
-        const Aligned& aligned, const AlignedPoints& points, int model, const WorkingPair& pair, int tried)
-{
-    if (aligned.fit.squared.empty())
-        return {"the images have too few matches", false};
-    const Verdict verdict(points.image, points.reference);  // errors are in the reference
-    std::vector<Aligned> richer;
-    for (int other = model + 1; other <= ALIGN_HOMOGRAPHY; other++)
-        richer.emplace_back(points, other);
-    const std::string wrongModel = reasonAgainstModel(aligned, richer, verdict, tried);
-    if (!wrongModel.empty())
-        return {wrongModel, true};
-    if (!isCertain(aligned, verdict, tried))
-        return {format("the transform that agrees best has %d of %d matches, no more than chance may give: "
-                       "the images may not show the same",
-                        aligned.count(), aligned.problem.size()),
-                false};
-    const Aligned& richest = richer.empty() || richer.back().fit.squared.empty() ? aligned : richer.back();
-    const Verdict::Marks moved = movedBeside(richest, points, LEAST_PARALLAX, verdict);
-    if (verdict.places(moved) > MOST_PARALLAX * verdict.places(richest.agree))
-        return {format("%d matches agree with one transform, and %d more are beside it along lines through "
-                       "one point: the camera moved through a scene that is not flat (parallax; "
-                       "findRelativePose is for such images), or a part of what it sees moved one way, as "
-                       "shadows do",
-                        richest.count(), countOf(moved)),
-                true};
-    const Spread spread(points, aligned.agree, aligned.problem.inPixels(aligned.fit.model), pair,
-            aligned.problem.sampleSize());
-    if (spread.area < LEAST_SPREAD || spread.whole < LEAST_WHOLE)
-        return {format("the images share %.0f %% of what both could show and nothing else: a logo, a "
-                       "caption?",
-                        100 * std::min(spread.area, spread.whole)),
-                false};
-    if (spread.scatter < LEAST_SCATTER)
-        return {format("the images share a few small parts, with %d matches, and nothing between these: "
-                       "logos, captions?",
-                        aligned.count()),
-                false};
-    return {"", true};
-}
-
 //! What images matched in one pair of views tell, in the images' own pixels.
 struct Answer
 {
@@ -205,6 +32,7 @@ struct Answer
     Mat agreeing;       //!< as alignImages returns matches
     Matx33d transform;  //!< that most of them agree with, also where it is refused
     Mat error;
+    int simplest = 0;  //!< AlignmentModel
 
     bool found() const { return judgement.against.empty(); }
 };
@@ -218,42 +46,71 @@ std::vector<Point2d> agreeing(const Mat& points, const Verdict::Marks& agree)
     return chosen;
 }
 
+//! Matches of one size, the transform that they have, how far off it may be, and whether it is true.
+struct Alignment
+{
+    AlignedPoints points;
+    Evidence evidence;
+    std::vector<FittedTransform> all;
+    size_t best;
+    double beside;  //!< what parts of the images differ by from the transform, working pixels
+    Mat errors;     //!< working pixels
+    Judgement judgement;
+
+    /** @param isBeside the same, where it is known; below 0: the matches show it.
+    @param pixel in which the matches were refined, working pixels. */
+    Alignment(const AlignedPoints& matched, const WorkingPair& pair, int model, int tried, double isBeside,
+            double pixel)
+        : points(matched), evidence(points, pair, tried),
+          all(fittedTransforms(points, model == ALIGN_AUTO ? ALIGN_TRANSLATION : model)),
+          best(model == ALIGN_AUTO ? simplestTrue(all, evidence) : 0),
+          beside(isBeside < 0 && fitted().exists() ? deviationBeside(fitted(), evidence) : isBeside)
+    {
+        if (fitted().exists())
+            errors = cornerErrors(fitted(), points, pair.imageCorners(), beside, pixel);
+        judgement = judge(all, best, evidence, errors);
+        if (judgement.against.empty() && tried > 1 &&
+                areOneStructure(agreeing(points.reference, fitted().agree)))
+            judgement = {
+                    "the images share one structure that looks the same in some view, such as a round spot",
+                    false, ""};
+    }
+
+    Alignment(const Alignment&) = delete;
+
+    const FittedTransform& fitted() const { return all[best]; }
+
+    Answer inPixels(int model) const
+    {
+        const WorkingPair& pair = evidence.pair;
+        Answer answer = {judgement, pair.inPixels(points, fitted().agree), Matx33d(), Mat()};
+        if (!fitted().exists())
+            return answer;
+        answer.transform = pair.inPixels(fitted().transform());
+        if (!answer.found())
+            return answer;
+        answer.error = Mat(errors * pair.inPixels(1));
+        answer.simplest = model == ALIGN_AUTO ? fitted().model : simplestModel(fitted(), points);
+        if (answer.simplest < fitted().model && answer.judgement.note.empty())
+            answer.judgement.note =
+                    format("a transform of less freedom explains the matches as well, and is more exact: %s",
+                            nameOf(answer.simplest));
+        return answer;
+    }
+};
+
 Answer answerOf(const WorkingPair& pair, int model, int tried)
 {
-    AlignedPoints points = pair.match();
-    Aligned aligned(points, model);
-    Answer answer;
-    answer.judgement = judge(aligned, points, model, pair, tried);
-    if (answer.found() && tried > 1 && areOneStructure(agreeing(points.reference, aligned.agree)))
-        answer.judgement = {
-                "the images share one structure that looks the same in some view, such as a round spot",
-                false};
-    const double beside =
-            answer.found() ? deviationBeside(aligned, points) : 0;  // only those that agree are refined
-    if (answer.found() && pair.isReduced())
-    {
-        const AlignedPoints fine =
-                pair.refined(points, aligned.agree, aligned.problem.inPixels(aligned.fit.model));
-        const Aligned again(fine, model);
-        // Else they are too blurred, or sharp in a part alone.
-        if (again.count() > LEAST_REFINED * aligned.count())
-        {
-            const Judgement finer = judge(again, fine, model, pair, tried);
-            if (finer.isLast)
-            {
-                answer.judgement = finer;
-                aligned = again;
-                points = fine;
-            }
-        }
-    }
-    answer.agreeing = pair.inPixels(points, aligned.agree);
-    if (aligned.fit.squared.empty())
-        return answer;
-    answer.transform = pair.inPixels(aligned.problem.inPixels(aligned.fit.model));
-    if (answer.found())
-        answer.error = Mat(deviationsOf(aligned, points, pair.imageCorners(), beside) * pair.inPixels(1));
-    return answer;
+    const Alignment first(pair.match(), pair, model, tried, -1, 1);
+    if (!first.judgement.against.empty() || !pair.isReduced())
+        return first.inPixels(model);
+    const FittedTransform& fitted = first.fitted();
+    // Only those that agree are refined.
+    const Alignment again(pair.refined(first.points, fitted.agree, fitted.transform()), pair, model, tried,
+            first.beside, 1 / pair.inPixels(1));
+    // Else they are too blurred, or sharp in a part alone.
+    const bool isFiner = again.fitted().count() > LEAST_REFINED * fitted.count() && again.judgement.isLast;
+    return (isFiner ? again : first).inPixels(model);
 }
 
 class ImageAlignerImpl : public ImageAligner
@@ -265,7 +122,7 @@ public:
     }
 
     bool align(InputArray image, OutputArray transform, OutputArray error, OutputArray matches,
-            String* reason, InputArray mask) const override
+            String* reason, InputArray mask, int* simplest, String* note) const override
     {
         const ImageViews second(image.getMat(), mask.getMat(), FEATURES);
         Answer best;
@@ -276,6 +133,10 @@ public:
         writeRows(best.agreeing, matches);
         if (reason)
             *reason = best.judgement.against;
+        if (simplest)
+            *simplest = best.found() ? best.simplest : -1;
+        if (note)
+            *note = best.judgement.note;
         if (best.found())
         {
             Mat(best.transform).copyTo(transform);
@@ -350,19 +211,20 @@ private:
 
 Ptr<ImageAligner> ImageAligner::create(InputArray reference, int model, InputArray mask)
 {
-    if (model < ALIGN_TRANSLATION || model > ALIGN_HOMOGRAPHY)
+    if (model < ALIGN_TRANSLATION || model > ALIGN_AUTO)
         CV_Error(Error::StsBadArg,
                 format("alignImages: model is %d; it must be ALIGN_TRANSLATION, ALIGN_SIMILARITY, "
-                       "ALIGN_AFFINE or ALIGN_HOMOGRAPHY",
+                       "ALIGN_AFFINE, ALIGN_HOMOGRAPHY or ALIGN_AUTO",
                         model));
     return makePtr<ImageAlignerImpl>(reference.getMat(), model, mask.getMat());
 }
 
 bool alignImages(InputArray reference, InputArray image, OutputArray transform, int model, OutputArray error,
-        OutputArray matches, String* reason, InputArray referenceMask, InputArray mask)
+        OutputArray matches, String* reason, InputArray referenceMask, InputArray mask, int* simplest,
+        String* note)
 {
     return ImageAligner::create(reference, model, referenceMask)
-            ->align(image, transform, error, matches, reason, mask);
+            ->align(image, transform, error, matches, reason, mask, simplest, note);
 }
 
 }  // namespace cv::iib

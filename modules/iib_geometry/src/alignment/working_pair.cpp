@@ -15,6 +15,8 @@ int factorFor(const Size& size, int workingSize)
             (std::max(size.width, size.height) + workingSize - 1) / workingSize, 1, largestFactor(size));
 }
 
+const int SAMPLES_ACROSS = 32;  // at which is asked what both images show
+
 Point2d rowOf(const Mat& points, int i) { return points.at<Vec2d>(i); }
 
 //! Moves points, N x 2, CV_64F.
@@ -58,7 +60,8 @@ WorkingPair::WorkingPair(
 
 AlignedPoints WorkingPair::match() const
 {
-    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {seen_[0]->keypoints, seen_[1]->keypoints}};
+    AlignedPoints result = {
+            Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {seen_[0]->keypoints, seen_[1]->keypoints}, {}};
     const std::vector<DMatch> matches = matchesOf(*seen_[0], *seen_[1]);
     if (matches.empty())
         return result;
@@ -67,6 +70,8 @@ AlignedPoints WorkingPair::match() const
             points1, points2);
     points1.convertTo(result.reference, CV_64F);
     points2.convertTo(result.image, CV_64F);
+    for (const DMatch& match : matches)
+        result.sizes.push_back(result.keypoints[0][match.queryIdx].size);
     return result;
 }
 
@@ -96,6 +101,7 @@ AlignedPoints WorkingPair::refined(
     const Matx33d between = fromImage[1] * toImage * fromImage[0].inv();
     std::vector<KeyPoint> first, second;
     std::vector<DMatch> matches;
+    std::vector<float> sizes;
     for (size_t i = 0; i < agree.size(); i++)
     {
         if (!agree[i])
@@ -106,19 +112,56 @@ AlignedPoints WorkingPair::refined(
         first.emplace_back(Point2f(from), (float)size, 0.f);
         second.emplace_back(Point2f(to), (float)(size * norm(beside)), (float)angle);
         matches.emplace_back((int)matches.size(), (int)matches.size(), 0.f);
+        sizes.push_back(points.sizes[i]);
     }
     Mat points1, points2, similarities;
     refineMatches(
             *prepared[0], first, *prepared[1], second, matches, points1, points2, noArray(), similarities);
-    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {points.keypoints[0], points.keypoints[1]}};
+    AlignedPoints result = {
+            Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {points.keypoints[0], points.keypoints[1]}, {}};
     for (size_t i = 0; i < matches.size(); i++)
         if (similarities.at<float>((int)i) >= 0)
         {
             const Point2d from = points1.at<Point2f>((int)i), to = points2.at<Point2f>((int)i);
             result.reference.push_back(Mat(Vec2d(moved(toWorking[0], from))).t());
             result.image.push_back(Mat(Vec2d(moved(toWorking[1], to))).t());
+            result.sizes.push_back(sizes[i]);
         }
     return result;
+}
+
+SharedPart WorkingPair::sharedPart(int which, const AlignedPoints& points, const std::vector<bool>& agree,
+        const Matx33d& transform) const
+{
+    const Matx33d toImage = seen_[which]->fromImage.inv(), toOther = seen_[!which]->fromImage.inv() *
+                                                                     (which ? transform : transform.inv()) *
+                                                                     toImage.inv();
+    const auto both = [&](const Point2d& point) {
+        return images_[which]->shows(point) && images_[!which]->shows(moved(toOther, point));
+    };
+    SharedPart part = {0, {}, {}, {}};
+    const Size size = images_[which]->size();
+    const double width = (double)size.width / SAMPLES_ACROSS, height = (double)size.height / SAMPLES_ACROSS;
+    for (int row = 0; row < SAMPLES_ACROSS; row++)
+        for (int column = 0; column < SAMPLES_ACROSS; column++)
+            part.area += both({(column + .5) * width - .5, (row + .5) * height - .5}) ? width * height : 0;
+    for (const KeyPoint& keypoint : points.keypoints[which])
+    {
+        const Point2d point = moved(toImage, keypoint.pt);
+        if (both(point))
+            part.points.push_back(point);
+    }
+    const Mat& places = which ? points.image : points.reference;
+    for (size_t i = 0; i < agree.size(); i++)
+        if (agree[i])
+        {
+            const Point2d point = moved(toImage, rowOf(places, (int)i));
+            part.agreeing.push_back(point);
+            const Point pixel(std::clamp(cvRound(point.x), 0, size.width - 1),
+                    std::clamp(cvRound(point.y), 0, size.height - 1));
+            part.values.push_back(mean(images_[which]->image()(Rect(pixel, Size(1, 1))))[0]);
+        }
+    return part;
 }
 
 std::vector<Point2d> WorkingPair::imageCorners() const
@@ -129,6 +172,12 @@ std::vector<Point2d> WorkingPair::imageCorners() const
     for (const Point2d& corner : {Point2d(), Point2d(right, 0), Point2d(right, bottom), Point2d(0, bottom)})
         corners.push_back(moved(seen_[1]->fromImage, corner));
     return corners;
+}
+
+Mat WorkingPair::sameView() const
+{
+    const bool same = norm(seen_[0]->fromImage, seen_[1]->fromImage, NORM_INF) == 0;
+    return same ? views_.views[0].pixels(images_[0]->image()) : Mat();
 }
 
 Matx33d WorkingPair::inPixels(const Matx33d& transform) const

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../common/points.hpp"
+#include "../verdict/spread.hpp"
 #include "../views/image_views.hpp"
 
 namespace cv::iib {
@@ -11,6 +12,7 @@ struct AlignedPoints
 {
     Mat reference, image;
     std::vector<KeyPoint> keypoints[2];  //!< of both, all that were looked for
+    std::vector<float> sizes;            //!< of the matches' keypoints in the reference
 };
 
 /** Two images that are matched in views of them, and whose matches are refined at full size afterwards. Working pixels are those of the
@@ -37,17 +39,19 @@ public:
     AlignedPoints refined(
             const AlignedPoints& points, const std::vector<bool>& agree, const Matx33d& transform) const;
 
-    //! Of the view of the reference, working pixels.
-    Size referenceSize() const { return views_.views[0].sizeOf(images_[0]->size()); }
+    /** What one of both has where the other one shows the same, in its own pixels.
+    @param which 0 for the reference, 1 for the image.
+    @param transform from the image to the reference, working pixels. */
+    SharedPart sharedPart(int which, const AlignedPoints& points, const std::vector<bool>& agree,
+            const Matx33d& transform) const;
 
     //! Corners of the image, working pixels.
     std::vector<Point2d> imageCorners() const;
 
-    //! Whether the reference, 0, or the image, 1, has something at a working pixel that its mask allows.
-    bool shows(int which, const Point2d& point) const
-    {
-        return images_[which]->shows(moved(seen_[which]->fromImage.inv(), point));
-    }
+    //! The reference as it is matched, where both images are seen in the same view; else empty.
+    Mat sameView() const;
+
+    double imageDiagonal() const { return norm(imageCorners()[2] - imageCorners()[0]); }
 
     //! A transform between the images' own pixels, and a distance in the reference's, along the axis that is shortened most.
     Matx33d inPixels(const Matx33d& transform) const;

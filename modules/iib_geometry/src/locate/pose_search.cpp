@@ -53,36 +53,6 @@ std::vector<Match> mostSimilar(const std::vector<Match>& matches)
     return similar;
 }
 
-//! Matches under a pose, for errorsOfWrongMatches().
-class PlacedMatches
-{
-public:
-    typedef Affine3d Model;
-
-    PlacedMatches(const std::vector<Match>& matches, const Lens& lens) : matches_(matches), lens_(lens) {}
-
-    int size() const { return int(matches_.size()); }
-
-    PlacedMatches mixed(const std::vector<int>& order) const
-    {
-        PlacedMatches other = *this;
-        for (size_t i = 0; i < order.size(); i++)
-            other.matches_[i].point = matches_[size_t(order[i])].point;
-        return other;
-    }
-
-    void squaredErrors(const Affine3d& pose, std::vector<double>& errors) const
-    {
-        errors = errorsOf(matches_, lens_, pose);
-        for (double& error : errors)
-            error = std::isnan(error) ? std::numeric_limits<double>::infinity() : error * error;
-    }
-
-private:
-    std::vector<Match> matches_;
-    const Lens& lens_;
-};
-
 //! Estimates a pose in steps, in its Frame's axes. Each step returns false if it fails, and sets the location's reason.
 class PoseSearch
 {
@@ -197,16 +167,23 @@ private:
     //! Whether random matches would hardly agree as well, counted in matches and in places.
     bool isSignificant() const
     {
-        const PlacedMatches matches(matches_, lens_);
         const int sampleSize = 4;
-        Mat pixels(matches.size(), 2, CV_64F);
-        for (int i = 0; i < matches.size(); i++)
-            pixels.at<Point2d>(i) = matches_[size_t(i)].pixel;
+        const std::vector<Point2d> mapped = lens_.project(inCamera(pointsOf(matches_), pose_));
+        const auto errorOf = [&](int pixel, int point) {
+            const Match& match = matches_[size_t(pixel)];
+            const double error = norm(match.errorProjection * (mapped[size_t(point)] - match.pixel));
+            return std::isnan(error) ? std::numeric_limits<double>::infinity() : error * error;
+        };
+        Mat pixels(int(matches_.size()), 2, CV_64F);
         std::vector<double> squared;
-        matches.squaredErrors(pose_, squared);
-        return Verdict(pixels, pixels)
-                       .logFalseAlarms(squared, errorsOfWrongMatches(matches, pose_), Verdict::FROM_POINT,
-                               sampleSize, {limit_}) < Verdict::CERTAIN;
+        for (int i = 0; i < pixels.rows; i++)
+        {
+            pixels.at<Point2d>(i) = matches_[size_t(i)].pixel;
+            squared.push_back(errorOf(i, i));
+        }
+        const Verdict verdict(pixels, pixels);
+        return verdict.logFalseAlarms(squared, errorsOfWrongMatches(verdict, errorOf), Verdict::FROM_POINT,
+                       sampleSize, {limit_}) < Verdict::CERTAIN;
     }
 
     double depth() const { return medianDistance(inCamera(pointsOf(inliers_), pose_)); }

@@ -67,17 +67,18 @@ EpipolarProblem::EpipolarProblem(
     mostScale_ = MOST_SCALE * std::hypot(span.width, span.height);
 }
 
-EpipolarProblem EpipolarProblem::mixed(const std::vector<int>& order) const
+EpipolarProblem EpipolarProblem::subset(const std::vector<bool>& marks) const
 {
-    EpipolarProblem other = *this;
-    for (size_t i = 0; i < order.size(); i++)
-        other.second_[i] = second_[order[i]];
-    return other;
-}
-
-double EpipolarProblem::squaredError(const Matx33d& E, int i) const
-{
-    return squaredErrorOf(E, weights_, first_[i], second_[i]);
+    EpipolarProblem chosen = *this;
+    chosen.first_.clear();
+    chosen.second_.clear();
+    for (size_t i = 0; i < marks.size(); i++)
+        if (marks[i])
+        {
+            chosen.first_.push_back(first_[i]);
+            chosen.second_.push_back(second_[i]);
+        }
+    return chosen;
 }
 
 void EpipolarProblem::propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const
@@ -108,12 +109,12 @@ void EpipolarProblem::propose(const std::vector<int>& sample, std::vector<Relati
     }
 }
 
-double EpipolarProblem::loss(const RelativePose& pose, double scale, double limit) const
+double EpipolarProblem::loss(const RelativePose& pose, const Loss& by, double limit) const
 {
     const Matx33d essential = essentialOf(pose);
     const Vec4d weights = weights_;
     const Point2d *const first = first_.data(), *const second = second_.data();
-    const double perScale2 = 1 / square(scale);
+    const double perScale2 = 1 / square(by.scale);
     double loss = 0;
     for (int begin = 0; begin < size() && loss <= limit; begin += STRIDE)
     {
@@ -122,10 +123,19 @@ double EpipolarProblem::loss(const RelativePose& pose, double scale, double limi
         for (int i = 0; i < count; i++)
             shares[i] = squaredErrorOf(essential, weights, first[begin + i], second[begin + i]) * perScale2;
         for (int i = 0; i < count; i++)
-            product *= 1 + std::min(shares[i], FARTHEST);
+            product *= 1 + std::min(shares[i], by.farthest);
         loss += std::log(product);
     }
     return loss;
+}
+
+double EpipolarProblem::squaredError(
+        const RelativePose& pose, const Matx33d& essential, int first, int second) const
+{
+    const double squared = squaredErrorOf(essential, weights_, first_[first], second_[second]);
+    return inFront(pose, first_[first], second_[second])
+                   ? squared
+                   : std::max(squared, square(parallax(pose, first, second)));
 }
 
 void EpipolarProblem::squaredErrors(const RelativePose& pose, std::vector<double>& errors) const
@@ -133,16 +143,14 @@ void EpipolarProblem::squaredErrors(const RelativePose& pose, std::vector<double
     const Matx33d essential = essentialOf(pose);
     errors.resize(size());
     for (int i = 0; i < size(); i++)
-        errors[i] = inFront(pose, first_[i], second_[i])
-                            ? squaredError(essential, i)
-                            : std::max(squaredError(essential, i), square(parallax(pose, i)));
+        errors[i] = squaredError(pose, essential, i, i);
 }
 
-double EpipolarProblem::parallax(const RelativePose& pose, int i) const
+double EpipolarProblem::parallax(const RelativePose& pose, int first, int second) const
 {
-    const Vec3d far = pose.R * Vec3d(first_[i].x, first_[i].y, 1);
-    return far[2] > 0 ? std::sqrt(square(far[0] / far[2] - second_[i].x) / (weights_[0] + weights_[2]) +
-                                  square(far[1] / far[2] - second_[i].y) / (weights_[1] + weights_[3]))
+    const Vec3d far = pose.R * Vec3d(first_[first].x, first_[first].y, 1);
+    return far[2] > 0 ? std::sqrt(square(far[0] / far[2] - second_[second].x) / (weights_[0] + weights_[2]) +
+                                  square(far[1] / far[2] - second_[second].y) / (weights_[1] + weights_[3]))
                       : std::numeric_limits<double>::infinity();
 }
 
@@ -219,7 +227,7 @@ Vec3d EpipolarProblem::planeOf(const RelativePose& pose, double scale) const
     std::vector<Seen> all;
     for (int i = 0; i < size(); i++)
     {
-        if (!(squaredError(essential, i) < farthest2))
+        if (!(squaredErrorOf(essential, weights_, first_[i], second_[i]) < farthest2))
             continue;
         const Vec3d u(first_[i].x, first_[i].y, 1), v(second_[i].x, second_[i].y, 1),
                 turned = pose.R * u, across = v.cross(pose.t);
@@ -320,23 +328,27 @@ void EpipolarProblem::linearize(const RelativePose& pose, double limit, std::vec
     }
 }
 
-Square<EpipolarProblem::Step> EpipolarProblem::noiseInDerivatives(
+std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
         const RelativePose& pose, const std::vector<Row<Step>>& rows, double noise2) const
 {
     const double little = .01;  // pixels, for differences
+    const double more = 1 + 2 * std::sqrt(2. / std::max<double>((double)rows.size(), 1));
     const Linear linear(pose);
-    Square<Step> sum = Square<Step>::zeros();
+    std::vector<Square<Step>> all;
     for (const Row<Step>& r : rows)
+    {
+        Square<Step> noise = Square<Step>::zeros();
         for (int coordinate = 0; coordinate < 4; coordinate++)
         {
             Point2d first = first_[r.match], second = second_[r.match];
             double* const moved[] = {&second.x, &second.y, &first.x, &first.y};
             *moved[coordinate] += little * pixels_[coordinate];
-            const Step change = row(linear, first, second).J - r.J;
-            addProduct(change, noise2 / square(little), sum);
+            addProduct(row(linear, first, second).J - r.J, noise2 / square(little) * more, noise);
         }
-    mirror(sum);
-    return sum * (1 + 2 * std::sqrt(2. / std::max<double>((double)rows.size(), 1)));
+        mirror(noise);
+        all.push_back(noise * std::min(1., r.J.dot(r.J) / (trace(noise) + NOWHERE)));
+    }
+    return all;
 }
 
 }  // namespace cv::iib

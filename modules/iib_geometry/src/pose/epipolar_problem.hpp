@@ -17,43 +17,41 @@ public:
     //! Both N x 2, CV_64F, pixels; matrices of cameras without skew.
     EpipolarProblem(const Mat& points1, const Mat& points2, const Matx33d& camera1, const Matx33d& camera2);
 
-    //! The same first points, and the second ones in another order.
-    EpipolarProblem mixed(const std::vector<int>& order) const;
+    //! Those of the matches that are marked.
+    EpipolarProblem subset(const std::vector<bool>& marks) const;
 
     int size() const { return (int)first_.size(); }
     double mostScale() const { return mostScale_; }
     int sampleSize() const { return 5; }
-    int fewestSamples() const { return 100; }
     int parameters() const { return 5; }
 
     //! The poses that see the sample in front of both cameras.
     void propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const;
 
     //! Blind to points behind a camera, which have an epipolar line all the same.
-    double loss(const RelativePose& pose, double scale, double limit) const;
+    double loss(const RelativePose& pose, const Loss& by, double limit) const;
 
     //! Of a match behind a camera, as of a point at infinity, the nearest that may be.
     void squaredErrors(const RelativePose& pose, std::vector<double>& errors) const;
+    //! The same of the first point of a match and the second point of another. @param essential that of the pose.
+    double squaredError(const RelativePose& pose, const Matx33d& essential, int first, int second) const;
     //! How far a match is from where a point at infinity would be seen, pixels: as Sampson's error, a part of it in either image.
-    double parallax(const RelativePose& pose, int i) const;
+    double parallax(const RelativePose& pose, int first, int second) const;
 
-    //! The same epipolar lines, and t the other way.
-    std::vector<RelativePose> alternatives(const RelativePose& pose) const { return {{pose.R, -pose.t}}; }
     //! What else the plane that most of the matches lie on may be seen from (Faugeras and Lustman 1988).
     std::vector<RelativePose> rivals(const RelativePose& pose, double scale) const;
     bool areApart(const RelativePose& pose, const RelativePose& other) const;
     void linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const;
     RelativePose moved(const RelativePose& pose, const Step& step) const { return iib::moved(pose, step); }
 
-    /** The part of the rows' sum of J J' / (1 + r^2 / scale^2) that noise of the points alone makes: of points without parallax all
-    that there is for the direction of t. Rather too much than too little of it.
+    /** The part of each row's J J' that noise of the points alone makes: of points without parallax all that there is for the direction of
+    t. Rather too much than too little of it, but no more than the row has: beside an epipole all is noise.
     @param noise2 variance of a coordinate, pixels^2. */
-    Square<Step> noiseInDerivatives(
+    std::vector<Square<Step>> noiseInDerivatives(
             const RelativePose& pose, const std::vector<Row<Step>>& rows, double noise2) const;
 
 private:
     struct Linear;
-    double squaredError(const Matx33d& essential, int i) const;
     Vec3d planeOf(const RelativePose& pose, double scale) const;
     Row<Step> row(const Linear& linear, const Point2d& first, const Point2d& second) const;
 

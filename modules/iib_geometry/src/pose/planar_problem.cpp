@@ -68,14 +68,6 @@ PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind) :
     unit_ = spread;
 }
 
-PlanarProblem PlanarProblem::mixed(const std::vector<int>& order) const
-{
-    PlanarProblem other = *this;
-    for (size_t i = 0; i < order.size(); i++)
-        other.image_[i] = image_[order[i]];
-    return other;
-}
-
 // Of T p = w r, with T = 1 + sum of s_k G_k, two equations a match are linear in s, and w drops out (Hartley and Zisserman 2004,
 // section 4.1).
 void PlanarProblem::propose(const std::vector<int>& sample, std::vector<Matx33d>& transforms) const
@@ -102,7 +94,7 @@ void PlanarProblem::propose(const std::vector<int>& sample, std::vector<Matx33d>
     if (mirrors(transform))
         return;
     for (int i : sample)
-        if (!(squaredError(transform, i) < 1))
+        if (!(squaredError(transform, i, i) < 1))
             return;  // beyond the horizon
     transforms.push_back(transform);
 }
@@ -125,26 +117,26 @@ PlanarProblem::Place PlanarProblem::placeOf(const Matx33d& transform, const Vec3
     return place;
 }
 
-double PlanarProblem::squaredError(const Matx33d& T, int i) const
+double PlanarProblem::squaredError(const Matx33d& T, int reference, int image) const
 {
-    const Vec3d q = T * image_[i];
+    const Vec3d q = T * image_[image];
     if (!(q[2] > 1e-6))
         return std::numeric_limits<double>::infinity();
-    const double x = q[0] / q[2] - reference_[i][0], y = q[1] / q[2] - reference_[i][1];
+    const double x = q[0] / q[2] - reference_[reference][0], y = q[1] / q[2] - reference_[reference][1];
     return unit_ * unit_ * (x * x + y * y);
 }
 
-double PlanarProblem::loss(const Matx33d& transform, double scale, double limit) const
+double PlanarProblem::loss(const Matx33d& transform, const Loss& by, double limit) const
 {
     if (mirrors(transform))
-        return size() * std::log1p(FARTHEST);
-    const double perScale2 = 1 / square(scale);
+        return size() * std::log1p(by.farthest);
+    const double perScale2 = 1 / square(by.scale);
     double sum = 0;
     for (int begin = 0; begin < size() && sum <= limit; begin += STRIDE)
     {
         double product = 1;
         for (int i = begin; i < std::min(begin + STRIDE, size()); i++)
-            product *= 1 + std::min(squaredError(transform, i) * perScale2, FARTHEST);
+            product *= 1 + std::min(squaredError(transform, i, i) * perScale2, by.farthest);
         sum += std::log(product);
     }
     return sum;
@@ -156,7 +148,7 @@ void PlanarProblem::squaredErrors(const Matx33d& transform, std::vector<double>&
     if (mirrors(transform))
         return;
     for (int i = 0; i < size(); i++)
-        errors[i] = squaredError(transform, i);
+        errors[i] = squaredError(transform, i, i);
 }
 
 void PlanarProblem::linearize(const Matx33d& transform, double limit, std::vector<Row<Step>>& rows) const
@@ -167,7 +159,7 @@ void PlanarProblem::linearize(const Matx33d& transform, double limit, std::vecto
     rows.reserve(2 * size());
     for (int i = 0; i < size(); i++)
     {
-        const double r2 = squaredError(transform, i);
+        const double r2 = squaredError(transform, i, i);
         if (!(r2 < limit))
             continue;
         const Place place = placeOf(transform, image_[i]);

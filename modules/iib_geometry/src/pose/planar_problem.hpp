@@ -16,28 +16,23 @@ public:
     //! Both N x 2, CV_64F, pixels; kind of AlignmentModel.
     PlanarProblem(const Mat& reference, const Mat& image, int kind);
 
-    //! The same points of the reference, and those of the image in another order.
-    PlanarProblem mixed(const std::vector<int>& order) const;
-
     int size() const { return (int)image_.size(); }
-    double mostScale() const { return .5; }  // its matches are refined
     int sampleSize() const { return parameters() / 2; }
-    int fewestSamples() const { return 150; }
     int parameters() const { return (int)basis_.size(); }
 
     void propose(const std::vector<int>& sample, std::vector<Matx33d>& transforms) const;
-    double loss(const Matx33d& transform, double scale, double limit) const;
+    double loss(const Matx33d& transform, const Loss& by, double limit) const;
+    //! Of a point of the reference and one of the image, if the transform mirrors nothing; infinite beyond the horizon.
+    double squaredError(const Matx33d& transform, int reference, int image) const;
     void squaredErrors(const Matx33d& transform, std::vector<double>& errors) const;
-    std::vector<Matx33d> alternatives(const Matx33d&) const { return {}; }
-    std::vector<Matx33d> rivals(const Matx33d&, double) const { return {}; }
-    bool areApart(const Matx33d&, const Matx33d&) const { return false; }  // a plane has one transform
     void linearize(const Matx33d& transform, double limit, std::vector<Row<Step>>& rows) const;
     Matx33d moved(const Matx33d& transform, const Step& step) const;
 
     //! Next to none.
-    Square<Step> noiseInDerivatives(const Matx33d&, const std::vector<Row<Step>>&, double) const
+    std::vector<Square<Step>> noiseInDerivatives(
+            const Matx33d&, const std::vector<Row<Step>>& rows, double) const
     {
-        return Square<Step>::zeros();
+        return std::vector<Square<Step>>(rows.size());
     }
 
     //! The same transform between pixels, and that of a model between pixels.
@@ -58,7 +53,6 @@ private:
         double value;
     };
     Place placeOf(const Matx33d& transform, const Vec3d& point) const;
-    double squaredError(const Matx33d& transform, int i) const;
 
     std::vector<Matx33d> basis_;            // a step adds multiples of them
     std::vector<Entry> entries_;            // of all of them

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opencv2/iib/relative_pose.hpp"
 
-#include "epipolar_problem.hpp"
+#include "pose_fit.hpp"
 #include "../common/points.hpp"
 #include "uncertainty.hpp"
-#include "../verdict/verdict.hpp"
+#include "../verdict/pose_verdict.hpp"
 
 namespace cv::iib {
 namespace {
 
-const double LEAST_SCALE = .1, MOST_SCALE = 1000;    // pixels
-const double RANK = 1e-13;                           // of covariances in double precision
-const double ONE_ROTATION = .05, ONE_DIRECTION = 1;  // radians: two poses less apart are one, not exact
-const double REFINED = .25;                          // least scale by which matches count as agreeing, pixels
+const double LEAST_SCALE = .1, MOST_SCALE = 1000;  // pixels
+const double RANK = 1e-13;                         // of covariances in double precision
+const double ONE_DIRECTION = 1;                    // radians: of poses more apart, t may have any
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {
@@ -36,158 +35,153 @@ Matx33d cameraMatrix(InputArray matrix, const char* name)
     return K;
 }
 
-/** Why the matches tell no pose; empty if they do.
-@param limit the distance, pixels, within which they agree by the least chance. */
-std::string reasonAgainst(const EpipolarProblem& problem, const Fit<EpipolarProblem>& fit,
-        const Verdict& verdict, double& limit)
+//! Both N x 2, CV_64F, continuous.
+bool isLess(const Mat& points, const Mat& others)
+{
+    const double *const a = (const double*)points.data, *const b = (const double*)others.data;
+    return std::lexicographical_compare(a, a + points.total(), b, b + others.total());
+}
+
+/** Of matches with these covariances, for the choice among poses: what was located less exactly says less.
+@return none for none. */
+std::vector<double> weightsOf(InputArray covariances, int count)
+{
+    std::vector<double> weights;
+    if (covariances.empty())
+        return weights;
+    Mat rows = covariances.getMat();
+    rows = rows.reshape(1, rows.rows);  // of three channels as of three columns
+    if ((rows.depth() != CV_32F && rows.depth() != CV_64F) || rows.size() != Size(3, count))
+        CV_Error(Error::StsBadArg, format("findRelativePose: covariances must be %d x 3, CV_32F or CV_64F, "
+                                          "as refineMatches gives them",
+                                           count));
+    rows.convertTo(rows, CV_64F);
+    for (int i = 0; i < count; i++)
+    {
+        const double variance =
+                rows.at<double>(i, 0) + rows.at<double>(i, 2);  // NaN, infinite: not located at all
+        weights.push_back(variance >= 0 ? 1 / std::sqrt(1 + variance) : 0);
+    }
+    return weights;
+}
+
+//! How far off a pose may be.
+struct PoseErrors
+{
+    Square<EpipolarProblem::Step> covariance;
+    EpipolarProblem::Step
+            rival;  //!< the step to another pose that explains the matches as well, which is another answer
+    bool hasRival = false;
+};
+
+/** The covariance of the matches around a pose, and what makes it larger: a direction that may be chance, and other poses that explain
+the matches as well. */
+PoseErrors estimateErrors(
+        const EpipolarProblem& problem, const PoseFit& fit, const Mat& points, const Verdict& verdict)
+{
+    const double level = 5;                     // standard deviations: another pose within them is expected
+    const double ofPlane = .05, ofOthers = .1;  // radians: turned by less, it is a larger error
+    const Square<EpipolarProblem::Step> anyDirection =
+            square(LARGEST_DEVIATION) * Square<EpipolarProblem::Step>::diag({0, 0, 0, 1, 1});
+    std::vector<int> parts;
+    const std::vector<int> partsOfAll = partsOf(points);
+    std::vector<double> parallaxes, squared;
+    for (int i = 0; i < problem.size(); i++)
+    {
+        parallaxes.push_back(problem.parallax(fit.model, i, i));
+        if (fit.used[i])
+            parts.push_back(partsOfAll[i]);
+    }
+    Fit<EpipolarProblem> around;
+    around.model = fit.model;
+    around.scale = fit.errorScale;
+    PoseErrors errors;
+    errors.covariance = covarianceOf(problem.subset(fit.used), around, parts, LARGEST_DEVIATION);
+    const double limit = 1.5 * std::max(fit.errorScale, LEAST_SCALE);
+    const bool hasDirection = isDirectionCertain(fit.squared, parallaxes, limit, verdict);
+    if (!hasDirection)
+        errors.covariance += anyDirection;
+    const Square<EpipolarProblem::Step> expected = errors.covariance.inv(DECOMP_SVD);
+    for (size_t k = 0; k < fit.others.size(); k++)
+    {
+        const EpipolarProblem::Step step = stepBetween(fit.model, fit.others[k]);
+        if (step.dot(expected * step) < square(level))
+            continue;
+        problem.squaredErrors(fit.others[k], squared);
+        if (explainsMore(fit.squared, squared, fit.errorScale, verdict))
+            continue;
+        const double turned = norm(Vec3d(step.val));
+        if (hasDirection && turned >= (k < fit.planar ? ofPlane : ofOthers) &&
+                turned > norm(Vec3d(errors.rival.val)))
+        {
+            errors.hasRival = true;
+            errors.rival = step;
+        }
+        if (step.dot(errors.covariance.inv(DECOMP_SVD) * step) > 1)  // one deviation away, in the end
+            errors.covariance += step * step.t();
+        if (norm(Vec2d(step.val + 3)) > ONE_DIRECTION)
+            errors.covariance += anyDirection;
+    }
+    errors.covariance = limited(errors.covariance, LARGEST_DEVIATION, RANK);
+    return errors;
+}
+
+//! Why there is no pose; empty if there is one.
+std::string reasonAgainst(
+        const EpipolarProblem& problem, const PoseFit& fit, const PoseErrors& errors, const Verdict& verdict)
 {
     if (fit.squared.empty())
         return "no pose agrees with five matches or more";
-    std::vector<double> limits;
-    for (double scales : {1.5, 3., 6., 12.})
-        limits.push_back(scales * std::max(fit.scale, REFINED));
-    if (verdict.logFalseAlarms(fit.squared, errorsOfWrongMatches(problem, fit.model), Verdict::FROM_LINE, 5,
-                limits, &limit) > Verdict::CERTAIN)
+    if (fit.logFalseAlarms > Verdict::CERTAIN)
         return format(
                 "the pose that agrees best has matches in %d places of the image, no more than chance may "
                 "give: the images may not show the same",
-                verdict.places(within(limits[1], fit.squared)));
+                verdict.places(within(3 * std::max(fit.scale, REFINED), fit.squared)));
+    if (verdict.isOfSmallParts(within(fit.limit, fit.squared), problem.sampleSize(), fit.chance))
+        return "the matches that agree are in small parts of the image, and the others do not agree: a "
+               "logo, a caption?";
+    if (errors.hasRival)
+        return format("two poses explain the matches as well, turned by %.0f and moved in directions by "
+                      "%.0f degrees against each other: the points may lie on a plane",
+                norm(Vec3d(errors.rival.val)) * 180 / CV_PI, norm(Vec2d(errors.rival.val + 3)) * 180 / CV_PI);
     return "";
-}
-
-//! The scale that the errors tell, if it is wider than the one that was given.
-double scaleOf(const EpipolarProblem& problem, const Fit<EpipolarProblem>& fit)
-{
-    for (double scale = fit.scale, told; scale <= problem.mostScale(); scale *= 2)
-        if (settles(fit.squared, FARTHEST_OF_CHOICE * scale, problem.parameters(), told))
-            return told;
-    return fit.scale;
-}
-
-//! Polishes the pose under a wider scale where few matches are within the one that they told: it may be too narrow.
-void polishFew(const EpipolarProblem& problem, double scale, Fit<EpipolarProblem>& fit)
-{
-    const int few = 30;
-    const Verdict::Marks near = within(3 * fit.scale, fit.squared);
-    if (std::count(near.begin(), near.end(), true) >= few)
-        return;
-    fit.scale = scale;
-    polish(problem, scale, 1e-9, fit.model);
-    problem.squaredErrors(fit.model, fit.squared);
-}
-
-/** Whether more places agree with the pose than with the other one, by one and by more than chance. Errors are cut off at four scales,
-which is a match more; the noise of matches that agree with both, as all of a plane do, is the chance. */
-bool leads(const Fit<EpipolarProblem>& fit, const Verdict& verdict)
-{
-    const double farthest2 = square(FARTHEST_OF_CHOICE * fit.scale), inside2 = FARTHEST * square(fit.scale);
-    const double level = 2;  // standard deviations
-    std::vector<double> all(fit.squared.size()), both = all;
-    for (size_t i = 0; i < all.size(); i++)
-    {
-        all[i] = (std::min(fit.otherSquared[i], farthest2) - std::min(fit.squared[i], farthest2)) / farthest2;
-        if (std::max(fit.otherSquared[i], fit.squared[i]) < inside2)
-            both[i] = all[i];
-    }
-    double lead = 0, chance2 = 0;
-    for (double places : verdict.sumsOfPlaces(all))
-        lead += std::clamp(places, -1., 1.);
-    for (double places : verdict.sumsOfPlaces(both))
-        chance2 += square(places);
-    return lead >= 1 + level * std::sqrt(chance2);
-}
-
-//! Whether another pose explains the matches as well and is none that the errors tell of, as the matches around the pose tell them.
-bool hasRival(
-        const Fit<EpipolarProblem>& fit, const Verdict& verdict, const Square<EpipolarProblem::Step>& errors)
-{
-    const double level = 5;  // standard deviations: another pose within them is told by the covariance
-    if (fit.otherSquared.empty() || leads(fit, verdict))
-        return false;
-    const EpipolarProblem::Step between = stepBetween(fit.model, fit.other);
-    return between.dot(errors.inv(DECOMP_SVD) * between) >= square(level);
-}
-
-/** Whether the direction of t is more than chance. Matches without parallax say nothing of it; of the others one whose parallax is
-much longer than the limit agrees with a wrong direction by the chance asin(limit / parallax) 2 / pi. */
-bool tellsDirection(const EpipolarProblem& problem, const Fit<EpipolarProblem>& fit, const Verdict& verdict)
-{
-    const double limit = 1.5 * std::max(fit.scale, LEAST_SCALE);
-    const int matchesOfDirection = 2;
-    Verdict::Marks seen(fit.squared.size()), agree = seen;
-    double chances = 0, count = 0;
-    for (int i = 0; i < problem.size(); i++)
-    {
-        const double parallax = problem.parallax(fit.model, i);
-        if (parallax < 2 * limit)
-            continue;
-        seen[i] = true;
-        agree[i] = fit.squared[i] < limit * limit;
-        chances += std::asin(limit / parallax) * 2 / CV_PI;
-        count++;
-    }
-    return verdict.logFalseAlarms(seen, agree, matchesOfDirection, chances / std::max(count, 1.)) <
-           Verdict::CERTAIN;
 }
 
 }  // namespace
 
 bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraMatrix1,
         InputArray cameraMatrix2, OutputArray R, OutputArray t, OutputArray inliers, double scale,
-        OutputArray covariance, String* reason)
+        OutputArray covariance, String* reason, InputArray covariances)
 {
-    const Mat first = pointsOf(points1, "findRelativePose", "points1"),
-              second = pointsOf(points2, "findRelativePose", "points2");
+    Mat first = pointsOf(points1, "findRelativePose", "points1"),
+        second = pointsOf(points2, "findRelativePose", "points2");
     checkMatched(first, second, "findRelativePose");
     if (!(scale >= 0) || cvIsInf(scale))
         CV_Error(Error::StsOutOfRange,
                 "findRelativePose: scale, in pixels, must be finite and over 0, or 0, to be chosen");
-    const EpipolarProblem problem(first, second, cameraMatrix(cameraMatrix1, "cameraMatrix1"),
-            cameraMatrix(cameraMatrix2, "cameraMatrix2"));
-    Fit<EpipolarProblem> fit = robustFit(problem, scale > 0 ? std::clamp(scale, LEAST_SCALE, MOST_SCALE) : 0);
-    const Verdict verdict(first, second);
-    double limit = 0;
-    std::string why = reasonAgainst(problem, fit, verdict, limit);
-    double wide = 0;  // errors with long tails are told as large as they are
-    if (why.empty())
+    Matx33d camera1 = cameraMatrix(cameraMatrix1, "cameraMatrix1"),
+            camera2 = cameraMatrix(cameraMatrix2, "cameraMatrix2");
+    // The answer is the same for swapped images: the one whose points come first in the order of numbers is the first.
+    const bool swapped = isLess(second, first);
+    if (swapped)
     {
-        wide = limit < 6 * fit.scale ? fit.scale : limit / 3;
-        if (scale == 0)
-            polishFew(problem, wide, fit);
-        else
-            wide = std::max(wide, scaleOf(problem, fit));
+        std::swap(first, second);
+        std::swap(camera1, camera2);
     }
+    const EpipolarProblem problem(first, second, camera1, camera2);
+    const Verdict verdict(first, second);
+    PoseFit fit = fitPose(problem, verdict, scale > 0 ? std::clamp(scale, LEAST_SCALE, MOST_SCALE) : 0,
+            weightsOf(covariances, first.rows));
+    PoseErrors errors;
+    if (fit.logFalseAlarms < Verdict::CERTAIN)
+        errors = estimateErrors(problem, fit, first, verdict);
+    const std::string why = reasonAgainst(problem, fit, errors, verdict);
     if (inliers.needed())
     {
         Mat agree(first.rows, 1, CV_8U, Scalar(0));
         const Verdict::Marks near = within(3 * std::max(fit.scale, REFINED), fit.squared);
         std::copy(near.begin(), near.end(), agree.begin<uchar>());
         agree.copyTo(inliers);
-    }
-    Square<EpipolarProblem::Step> errors;
-    if (why.empty())
-    {
-        fit.scale = wide;
-        errors = covarianceOf(problem, fit, partsOf(first), LARGEST_DEVIATION);
-        const bool told = tellsDirection(problem, fit, verdict);
-        const Square<EpipolarProblem::Step> anyDirection =
-                square(LARGEST_DEVIATION) * Square<EpipolarProblem::Step>::diag({0, 0, 0, 1, 1});
-        if (!told)
-            errors += anyDirection;
-        if (hasRival(fit, verdict, errors))
-        {
-            const EpipolarProblem::Step between = stepBetween(fit.model, fit.other);
-            const double turned = norm(Vec3d(between.val)), moved = norm(Vec2d(between.val + 3));
-            if (told && turned >= ONE_ROTATION)
-                why = format(
-                        "two poses explain the matches as well, turned by %.0f and moved in directions by "
-                        "%.0f degrees against each other: the points may lie on a plane",
-                        turned * 180 / CV_PI, moved * 180 / CV_PI);
-            errors += between * between.t();
-            if (moved > ONE_DIRECTION)
-                errors += anyDirection;
-        }
-        errors = limited(errors, LARGEST_DEVIATION, RANK);
     }
     if (reason)
         *reason = why;
@@ -197,10 +191,16 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
             clear(*output);
         return false;
     }
+    if (swapped)
+    {
+        const Matx<double, 5, 5> back = stepOfInverse(fit.model);
+        errors.covariance = limited(back * errors.covariance * back.t(), LARGEST_DEVIATION, RANK);
+        fit.model = inverse(fit.model);
+    }
     Mat(fit.model.R).copyTo(R);
     Mat(fit.model.t).copyTo(t);
     if (covariance.needed())
-        Mat(errors).copyTo(covariance);
+        Mat(errors.covariance).copyTo(covariance);
     return true;
 }
 

@@ -11,26 +11,26 @@
 
 namespace cv::iib {
 
-/* Fits a model to matches many of which are wrong. The loss of a match with squared error r^2 is Cauchy's log(1 + r^2 / scale^2),
-and from FARTHEST scales^2 on that of FARTHEST: by how far a wrong match is wrong says nothing.
-
-A class Problem holds the matches and has
+/* Fits a model to matches many of which are wrong. A class Problem holds the matches and has
     Model, Step     what is sought, and a Vec<double, N> of changes to it
     int size()      number of matches
-    double mostScale()                 by which models are looked for, pixels
-    int sampleSize(), parameters()     matches that give a model; its degrees of freedom, N at most
-    int fewestSamples()                that are tried, however many matches agree
-    propose(sample, models)            models that agree with a sample: indices of sampleSize() matches
-    double loss(model, scale, limit)   the sum over all matches, or anything over the limit
+    int parameters()                   degrees of freedom of a model, N at most
+    propose(sample, models)            models that agree with a sample: indices of SampleSize matches
+    double loss(model, Loss, limit)    the sum over all matches, or anything over the limit
     squaredErrors(model, errors)       of all matches, pixels^2; infinite where the model forbids the match
-    alternatives(model)                models of the same loss that other squared errors may belong to
-    rivals(model, scale)               models, roughly, that may explain the same matches by another answer
-    bool areApart(model, other)        whether they are other answers, and not the same one found twice
     linearize(model, limit, rows)      the rows of matches whose squared error is below the limit
     Model moved(model, step) */
 
 const double FARTHEST = 9;            // three scales
 const double FARTHEST_OF_CHOICE = 4;  // scales at which squared errors are cut off when a model is chosen
+
+/** Of a match with squared error r^2, Cauchy's log(1 + r^2 / scale^2), and from `farthest` scales^2 on that of `farthest`: by how far a
+wrong match is wrong says nothing. */
+struct Loss
+{
+    double scale;  //!< pixels
+    double farthest = FARTHEST;
+};
 
 //! One coordinate of a match's error in pixels, its derivatives, and the squared length of the whole error.
 template <class Step> struct Row
@@ -64,18 +64,19 @@ template <int N> void mirror(Matx<double, N, N>& m)
 /** Lowers the loss by Levenberg and Marquardt's steps, until one lowers it by less than `enough` of it: with H the sum of w J J',
 w = 1 / (scale^2 + r^2), (H + damping diag H) step = -(sum of w r J) (Hartley and Zisserman 2004, appendix 6.2). */
 template <class Problem>
-void polish(const Problem& problem, double scale, double enough, typename Problem::Model& model)
+void polish(const Problem& problem, const Loss& by, double enough, typename Problem::Model& model)
 {
     typedef typename Problem::Step Step;
     const int rounds = 50;
-    const double most = 1e6;     // of the damping
-    const double least = 1e-12;  // on the diagonal, where the rows do not tell a number at all
-    const double perScale2 = 1 / (scale * scale);
-    double damping = 1e-3, loss = problem.loss(model, scale, std::numeric_limits<double>::max());
+    const double most = 1e6;       // of the damping
+    const double nothing = 1e-12;  // of a loss: exact matches have no end else
+    const double least = 1e-12;    // on the diagonal, where the rows do not tell a number at all
+    const double perScale2 = 1 / square(by.scale);
+    double damping = 1e-3, loss = problem.loss(model, by, std::numeric_limits<double>::max());
     std::vector<Row<Step>> rows;
-    for (int round = 0; round < rounds; round++)
+    for (int round = 0; round < rounds && loss > nothing; round++)
     {
-        problem.linearize(model, FARTHEST * scale * scale, rows);
+        problem.linearize(model, by.farthest * square(by.scale), rows);
         Square<Step> hessian = Square<Step>::eye() * least;
         Step gradient, step;
         for (const Row<Step>& row : rows)
@@ -95,7 +96,7 @@ void polish(const Problem& problem, double scale, double enough, typename Proble
                 damped(k, k) *= 1 + damping;
             solve(damped, gradient, step, DECOMP_CHOLESKY);
             const typename Problem::Model next = problem.moved(model, -step);
-            const double loss2 = problem.loss(next, scale, loss);
+            const double loss2 = problem.loss(next, by, loss);
             lower = loss2 < loss;
             if (lower)
             {
@@ -112,229 +113,244 @@ void polish(const Problem& problem, double scale, double enough, typename Proble
 template <class Problem> struct Fit
 {
     typename Problem::Model model;
-    double scale = 0;                  //!< under which the model was polished, pixels
-    std::vector<double> squared;       //!< errors of the matches, pixels^2; of none if there is no model
-    typename Problem::Model other;     //!< the next best one that is apart from it
-    std::vector<double> otherSquared;  //!< its errors; of none if there is no other
-    bool wantsMore = false;            //!< whether more samples might find a better one
+    double scale = 0;             //!< under which the model was polished, pixels
+    std::vector<double> squared;  //!< errors of the matches, pixels^2; of none if there is no model
+    int samples = 0;              //!< that were tried
+    double inlierRatio = 0;       //!< share of the matches within three scales
 };
 
-//! A model by its sum of squared errors, cut off at four scales: by how far a wrong match is wrong says nothing.
-template <class Problem> struct Candidate
+/** Looks for models that many matches agree with. The same in every run.
+
+Samples propose models, and those of the least loss are kept. Each is polished under a wider loss in the end: at a narrow scale a model
+that a cluster of wrong matches has drawn to itself may win. */
+template <class Problem> class Search
 {
-    typename Problem::Model model;
-    std::vector<double> squared;
-    double sum;
-
-    bool operator<(const Candidate& other) const { return sum < other.sum; }
-};
-
-//! A model and its alternatives, the best one first.
-template <class Problem>
-std::vector<Candidate<Problem>> withAlternatives(
-        const Problem& problem, double scale, const typename Problem::Model& model)
-{
-    std::vector<typename Problem::Model> models = problem.alternatives(model);
-    models.insert(models.begin(), model);
-    std::vector<Candidate<Problem>> candidates(models.size());
-    for (size_t k = 0; k < models.size(); k++)
-    {
-        Candidate<Problem>& candidate = candidates[k];
-        candidate.model = models[k];
-        candidate.sum = 0;
-        problem.squaredErrors(models[k], candidate.squared);
-        for (double error : candidate.squared)
-            candidate.sum += std::min(error, square(FARTHEST_OF_CHOICE * scale));
-    }
-    std::stable_sort(candidates.begin(), candidates.end());
-    return candidates;
-}
-
-//! Takes the best candidate and the next best one apart from it, if there are any.
-template <class Problem>
-void take(const Problem& problem, std::vector<Candidate<Problem>>& candidates, Fit<Problem>& fit)
-{
-    std::stable_sort(candidates.begin(), candidates.end());
-    fit.squared.clear();
-    fit.otherSquared.clear();
-    for (Candidate<Problem>& candidate : candidates)
-        if (fit.squared.empty())
-        {
-            fit.model = candidate.model;
-            fit.squared.swap(candidate.squared);
-        }
-        else if (problem.areApart(candidate.model, fit.model))
-        {
-            fit.other = candidate.model;
-            fit.otherSquared.swap(candidate.squared);
-            return;
-        }
-}
-
-/** The model that most matches agree with under one scale, pixels, not polished finely. The same in every run.
-
-Samples propose models, and those of the least loss are kept. Each is polished under twice the scale, and the one with the least
-sum of squared errors, cut off at four scales, is chosen: at the narrow scale a model that a cluster of wrong matches has drawn to
-itself may win. */
-template <class Problem> Fit<Problem> search(const Problem& problem, double scale, int mostTrials)
-{
+public:
     typedef typename Problem::Model Model;
-    const double roughly = 1e-3;  // how much less of its loss a model is polished for
-    const size_t most = 10;  // are polished in the end: that of the least loss need not lead to the best one
-    const size_t expected = 2;   // are polished before: by the better one samples are expected
-    const double missed = 1e-4;  // probability that no sample was of right matches alone
-    const double none = std::numeric_limits<double>::max();
-    Fit<Problem> fit;
-    const int count = problem.size(), size = problem.sampleSize();
-    if (count < size)
-        return fit;
 
-    RNG random(0x5eed);
+    /** @param fewest samples that are tried, however many matches agree.
+    @param missed probability that no sample was of right matches alone.
+    @param pool matches that samples are taken from; empty: all. */
+    Search(const Problem& problem, const Loss& by, const Loss& wider, int fewest, double missed,
+            const std::vector<int>& pool = {})
+        : problem_(problem), by_(by), wider_(wider), fewest_(fewest), missed_(missed), pool_(pool),
+          random_(0x5eed)
+    {
+        if (pool_.empty())
+            for (int i = 0; i < problem.size(); i++)
+                pool_.push_back(i);
+    }
+
+    /** Goes on until so many samples were tried, or enough for as many matches as agree.
+    @return models polished roughly: those of the least loss, the least one first as samples proposed them. */
+    std::vector<Model> upTo(int mostTrials)
+    {
+        if ((int)pool_.size() >= problem_.sampleSize())
+            while (samples_ < std::min<double>(mostTrials, wanted_))
+                trySamples(mostTrials);
+        std::vector<Model> models(best_.size());
+        inParallel(best_.size(), [&](size_t i) {
+            models[i] = best_[i].second;
+            polish(problem_, wider_, ROUGHLY, models[i]);
+        });
+        return models;
+    }
+
+    int samples() const { return samples_; }
+    bool wantsMore() const { return samples_ < wanted_; }  //!< whether more samples might find a better one
+
+private:
+    static constexpr double ROUGHLY = 1e-3;  // how much less of its loss a model is polished for
+    static constexpr size_t MOST = 10;       // kept: that of the least loss need not lead to the best one
     struct Proposal
     {
         std::vector<int> sample;
         std::vector<Model> models;
         std::vector<double> losses;  // or anything over the limit
     };
-    // Several threads propose at once; models are taken in the order of their samples, by the limit that is then. The fewest
-    // samples, 100 or 150, are whole batches.
-    const double batch = getNumThreads() > 1 ? 25 : 1;
-    std::vector<Proposal> proposals;
-    std::vector<std::pair<double, Model>> best;  // losses in order, and models
-    std::vector<double> squared;
-    double leastLoss = none, trials = mostTrials;
-    bool better = false;  // whether there is a better one than when samples were last expected
-    const auto expect = [&](Model model) {
-        polish(problem, scale, roughly, model);
-        const double loss = problem.loss(model, scale, leastLoss);
-        if (loss >= leastLoss)
-            return;
-        leastLoss = loss;
-        problem.squaredErrors(model, squared);
-        const double inside = FARTHEST * scale * scale;
-        const auto near = std::count_if(squared.begin(), squared.end(), [&](double e) { return e < inside; });
-        // Fischler and Bolles (1981): samples until one in 1 / missed searches had none of right matches alone.
-        const double right = std::pow((double)near / count, size);  // probability of such a sample
-        const double wanted = right > 0 ? std::log(missed) / std::log1p(-std::min(right, .999)) : none;
-        trials = std::max<double>(problem.fewestSamples(), std::min<double>(mostTrials, wanted));
-    };
-    const auto limitOf = [&] { return best.size() < most ? none : best.back().first; };
-    for (int trial = 0; trial < trials;)
+
+    double limit() const
     {
-        proposals.resize(cvCeil(std::min(batch, trials - trial)));
-        for (Proposal& proposal : proposals)
+        return best_.size() < MOST ? std::numeric_limits<double>::max() : best_.back().first;
+    }
+
+    //! Several threads propose at once; models are taken in the order of their samples, by the limit that is then.
+    void trySamples(int mostTrials)
+    {
+        // The fewest samples, 100 or 150, are whole batches.
+        const double batch = getNumThreads() > 1 ? 25 : 1;
+        const size_t expected = 2;  // are polished before: by the better one samples are expected
+        proposals_.resize(cvCeil(std::min({batch, (double)mostTrials - samples_, wanted_ - samples_})));
+        for (Proposal& proposal : proposals_)
         {
             std::vector<int>& sample = proposal.sample;
-            sample.resize(size);
-            for (int k = 0; k < size; k++)
+            sample.resize(problem_.sampleSize());
+            for (size_t k = 0; k < sample.size(); k++)
                 do
-                    sample[k] = random.uniform(0, count);
+                    sample[k] = pool_[random_.uniform(0, (int)pool_.size())];
                 while (std::find(sample.begin(), sample.begin() + k, sample[k]) != sample.begin() + k);
         }
-        const double limit = limitOf();
-        inParallel(proposals.size(), [&](size_t i) {
-            Proposal& proposal = proposals[i];
-            problem.propose(proposal.sample, proposal.models);
+        const double before = limit();
+        inParallel(proposals_.size(), [&](size_t i) {
+            Proposal& proposal = proposals_[i];
+            problem_.propose(proposal.sample, proposal.models);
             proposal.losses.clear();
             for (const Model& model : proposal.models)
-                proposal.losses.push_back(problem.loss(model, scale, limit));
+                proposal.losses.push_back(problem_.loss(model, by_, before));
         });
-        for (size_t i = 0; i < proposals.size() && trial < trials; i++)
+        for (size_t i = 0; i < proposals_.size() && samples_ < wanted_; i++)
         {
-            for (size_t k = 0; k < proposals[i].models.size(); k++)
+            for (size_t k = 0; k < proposals_[i].models.size(); k++)
+                keep({proposals_[i].losses[k], proposals_[i].models[k]});
+            if (++samples_ >= fewest_ && better_)
             {
-                const std::pair<double, Model> one(proposals[i].losses[k], proposals[i].models[k]);
-                if (one.first >= limitOf())
-                    continue;
-                if (best.size() == most)
-                    best.pop_back();
-                auto place = best.begin();
-                while (place != best.end() && place->first <= one.first)
-                    ++place;
-                better |= best.insert(place, one) == best.begin();
-            }
-            if (++trial >= problem.fewestSamples() && better)
-            {
-                for (size_t k = 0; k < std::min(best.size(), expected); k++)
-                    expect(best[k].second);
-                better = false;
+                for (size_t k = 0; k < std::min(best_.size(), expected); k++)
+                    expect(best_[k].second);
+                better_ = false;
             }
         }
     }
 
-    fit.wantsMore = trials == mostTrials;
-    std::vector<Candidate<Problem>> candidates(best.size());
-    inParallel(best.size(), [&](size_t i) {
-        polish(problem, 2 * scale, roughly, best[i].second);
-        candidates[i] = withAlternatives(problem, scale, best[i].second).front();
-    });
-    take(problem, candidates, fit);
-    return fit;
+    void keep(const std::pair<double, Model>& one)
+    {
+        if (one.first >= limit())
+            return;
+        if (best_.size() == MOST)
+            best_.pop_back();
+        auto place = best_.begin();
+        while (place != best_.end() && place->first <= one.first)
+            ++place;
+        better_ |= best_.insert(place, one) == best_.begin();
+    }
+
+    //! How many samples are wanted if a model is right.
+    void expect(Model model)
+    {
+        polish(problem_, by_, ROUGHLY, model);
+        const double loss = problem_.loss(model, by_, leastLoss_);
+        if (loss >= leastLoss_)
+            return;
+        leastLoss_ = loss;
+        std::vector<double> squared;
+        problem_.squaredErrors(model, squared);
+        const double inside = FARTHEST * square(by_.scale);
+        const auto near = std::count_if(squared.begin(), squared.end(), [&](double e) { return e < inside; });
+        // Fischler and Bolles (1981): samples until one in 1 / missed searches had none of right matches alone.
+        const double right = std::pow((double)near / problem_.size(), problem_.sampleSize());
+        wanted_ = right > 0 ? std::log(missed_) / std::log1p(-std::min(right, .999))
+                            : std::numeric_limits<double>::max();
+        wanted_ = std::max<double>(fewest_, wanted_);
+    }
+
+    const Problem& problem_;
+    const Loss by_, wider_;
+    const int fewest_;
+    const double missed_;
+    std::vector<int> pool_;
+    RNG random_;
+    std::vector<Proposal> proposals_;
+    std::vector<std::pair<double, Model>> best_;  // losses in order, and models
+    double leastLoss_ = std::numeric_limits<double>::max(), wanted_ = leastLoss_;
+    bool better_ = false;  // whether there is a better one than when samples were last expected
+    int samples_ = 0;
+};
+
+//! Takes the errors of a fit's model, and how many of the matches are near.
+template <class Problem> void finish(const Problem& problem, Fit<Problem>& fit)
+{
+    problem.squaredErrors(fit.model, fit.squared);
+    const double near = FARTHEST * square(fit.scale);
+    const auto count =
+            std::count_if(fit.squared.begin(), fit.squared.end(), [&](double e) { return e < near; });
+    fit.inlierRatio = (double)count / std::max(problem.size(), 1);
 }
 
-/** Whether the errors within a distance are those of right matches: most of them far below it, and few others around it. Else matches
-err by more, or are wrong.
-@param parameters of the model: so many errors are small because it was fitted to them.
-@param scale that the errors within it tell, by their median (Rousseeuw and Leroy 1987). */
-inline bool settles(const std::vector<double>& squared, double distance, int parameters, double& scale)
+/** The scale of the errors within a distance, by their median (Rousseeuw and Leroy 1987), pixels.
+@param parameters of the model: so many errors are small because it was fitted to them. */
+inline double scaleWithin(const std::vector<double>& squared, double distance, int parameters)
 {
-    const double most = .3;                  // of the distance: the median error
-    const double wider = 4, mostMore = 1.5;  // of those within the distance are within so many of it
-    const double least = .1;                 // scale, pixels: of refined matches
+    const double least = .1;  // of refined matches
     std::vector<double> near;
-    double around = 0;
     for (double error : squared)
-    {
         if (error < square(distance))
             near.push_back(error);
-        around += error < square(wider * distance);
-    }
     const double free = (double)near.size() - parameters;
     if (free <= 0)
-        return false;
+        return std::max(distance / 3, least);
     const auto middle = near.begin() + near.size() / 2;
     std::nth_element(near.begin(), middle, near.end());
-    const double median = std::sqrt(*middle * near.size() / free);
-    scale = std::max(1.4826 * median, least);
-    return median < most * distance && around - parameters < mostMore * free;
+    return std::max(1.4826 * std::sqrt(*middle * near.size() / free), least);
+}
+
+/** The same, if the errors within the distance are those of right matches: most of them far below it, and few others around it. Else
+matches err by more, or are wrong.
+@return whether they are. */
+inline bool findScale(const std::vector<double>& squared, double distance, int parameters, double& scale)
+{
+    const double most = .445;                // of the distance: the scale
+    const double wider = 4, mostMore = 1.5;  // of those within the distance are within so many of it
+    const auto free = [&](double limit) {
+        return (double)std::count_if(squared.begin(), squared.end(), [&](double error) {
+            return error < square(limit);
+        }) - parameters;
+    };
+    if (free(distance) <= 0)
+        return false;
+    scale = scaleWithin(squared, distance, parameters);
+    return scale < most * distance && free(wider * distance) < mostMore * free(distance);
 }
 
 /** The model that most matches agree with. The same in every run.
 @param scale of Cauchy's loss, pixels; 0: the errors tell it. Then scales from that of refined matches upwards are tried, each twice
-    the one before, with few samples, until the errors settle. */
-template <class Problem> Fit<Problem> robustFit(const Problem& problem, double scale)
+    the one before, with few samples, until most errors are far below it.
+@param mostScale by which models are looked for, pixels. */
+template <class Problem> Fit<Problem> robustFit(const Problem& problem, double scale, double mostScale = .5)
 {
-    const double finely = 1e-9, roughly = 1e-4, refined = .25;
-    const int fewTrials = 1000, mostTrials = 10000;
+    const double finely = 1e-9, refined = .25, missed = 1e-4;
+    const int fewest = 150, fewTrials = 1000, mostTrials = 10000;
     Fit<Problem> fit;
-    double narrow = scale > 0 ? scale : refined, told = scale;
-    bool settled = scale > 0;
-    for (; !settled && narrow <= problem.mostScale(); narrow *= settled ? 1 : 2)
+    const auto choose = [&](Search<Problem>& search, double narrow, int trials) {
+        fit.squared.clear();
+        double least = std::numeric_limits<double>::infinity();
+        std::vector<double> squared;
+        for (const typename Problem::Model& model : search.upTo(trials))
+        {
+            double sum = 0;
+            problem.squaredErrors(model, squared);
+            for (double error : squared)
+                sum += std::min(error, square(FARTHEST_OF_CHOICE * narrow));
+            if (sum >= least)
+                continue;
+            least = sum;
+            fit.model = model;
+            fit.squared.swap(squared);
+        }
+        fit.samples = search.samples();
+    };
+    double narrow = scale > 0 ? scale : refined, estimated = scale;
+    bool found = scale > 0;
+    for (; !found && narrow <= mostScale; narrow *= found ? 1 : 2)
     {
-        fit = search(problem, narrow, fewTrials);
-        settled = settles(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), told);
+        Search<Problem> search(problem, Loss{narrow}, Loss{2 * narrow}, fewest, missed);
+        choose(search, narrow, fewTrials);
+        found = findScale(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), estimated);
+        if (found && search.wantsMore())
+            choose(search, narrow, mostTrials);
     }
-    if (!settled)
+    if (!found)
         narrow = 2 * refined;
-    if (fit.wantsMore || fit.squared.empty() || !settled)
-        fit = search(problem, narrow, mostTrials);
+    if (fit.squared.empty() || !found)
+    {
+        Search<Problem> search(problem, Loss{narrow}, Loss{2 * narrow}, fewest, missed);
+        choose(search, narrow, mostTrials);
+    }
     if (fit.squared.empty())
         return fit;
-    if (scale == 0 && !settles(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), told))
-        told = narrow;
-    fit.scale = told;
-    polish(problem, fit.scale, finely, fit.model);
-    std::vector<Candidate<Problem>> candidates = withAlternatives(problem, fit.scale, fit.model);
-    std::vector<typename Problem::Model> rivals = problem.rivals(fit.model, fit.scale);
-    if (!fit.otherSquared.empty())
-        rivals.push_back(fit.other);
-    const size_t own = candidates.size();
-    candidates.resize(own + rivals.size());
-    inParallel(rivals.size(), [&](size_t i) {
-        polish(problem, fit.scale, roughly, rivals[i]);
-        candidates[own + i] = withAlternatives(problem, fit.scale, rivals[i]).front();
-    });
-    take(problem, candidates, fit);
+    if (scale == 0 && !findScale(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), estimated))
+        estimated = narrow;
+    fit.scale = estimated;
+    polish(problem, Loss{estimated}, finely, fit.model);
+    finish(problem, fit);
     return fit;
 }
 

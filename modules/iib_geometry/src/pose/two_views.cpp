@@ -58,6 +58,27 @@ Vec<double, 5> stepBetween(const RelativePose& pose, const RelativePose& other)
     return Vec<double, 5>(turn[0], turn[1], turn[2], along[0], along[1]);
 }
 
+// Of exp(w) R and t + B a, with B the tangents: R' exp(-w) = exp(-R' w) R', and -R' exp(-w) (t + B a) = -R't - R'(B a + t x w) + ...
+Matx<double, 5, 5> stepOfInverse(const RelativePose& pose)
+{
+    const Matx33d back = pose.R.t() * -1.;
+    const Matx<double, 2, 3> along = tangentsOf(inverse(pose).t).t() * back;
+    const Matx<double, 2, 3> byTurn = along * crossProduct(pose.t);
+    const Matx22d byTangents = along * tangentsOf(pose.t);
+    Matx<double, 5, 5> all = Matx<double, 5, 5>::zeros();
+    for (int c = 0; c < 3; c++)
+    {
+        for (int r = 0; r < 3; r++)
+            all(r, c) = back(r, c);
+        for (int r = 0; r < 2; r++)
+            all(3 + r, c) = byTurn(r, c);
+    }
+    for (int r = 0; r < 2; r++)
+        for (int c = 0; c < 2; c++)
+            all(3 + r, 3 + c) = byTangents(r, c);
+    return all;
+}
+
 // Horn, Recovering baseline and orientation from essential matrix, 1990: with E = [t]x R, t t' = tr(EE')/2 - EE',
 // and the matrix of cofactors is t t' R, so that R t't = cofactors - [t]x E; -t belongs to the other rotation.
 void posesOf(const Matx33d& essential, RelativePose (&poses)[4])

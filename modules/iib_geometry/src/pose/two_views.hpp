@@ -28,6 +28,12 @@ RelativePose moved(const RelativePose& pose, const Vec<double, 5>& step);
 //! The step by which a pose is moved to another one.
 Vec<double, 5> stepBetween(const RelativePose& pose, const RelativePose& other);
 
+//! The same pose from the axes of camera 2 to those of camera 1.
+inline RelativePose inverse(const RelativePose& pose) { return {pose.R.t(), -(pose.R.t() * pose.t)}; }
+
+//! What a small step from a pose is as a step from its inverse.
+Matx<double, 5, 5> stepOfInverse(const RelativePose& pose);
+
 //! The four poses of an essential matrix.
 void posesOf(const Matx33d& essential, RelativePose (&poses)[4]);
 

@@ -76,10 +76,11 @@ Matx<double, N, N> limited(const Matx<double, N, N>& covariance, double largest,
 
 /** Covariance of the numbers of a step from a fitted model to the true one.
 @param parts of the image, of each match.
-@param largest deviation of a number, in its unit: what nothing tells has it. */
+@param largest deviation of a number, in its unit: what nothing tells has it.
+@param shared part of a match's variance that the matches of a part of the image have in common. */
 template <class Problem>
-Square<typename Problem::Step> covarianceOf(
-        const Problem& problem, const Fit<Problem>& fit, const std::vector<int>& parts, double largest)
+Square<typename Problem::Step> covarianceOf(const Problem& problem, const Fit<Problem>& fit,
+        const std::vector<int>& parts, double largest, double shared = SHARED)
 {
     typedef typename Problem::Step Step;
     const double leastBend = .2;  // the noise is far over the scale
@@ -111,11 +112,14 @@ Square<typename Problem::Step> covarianceOf(
     };
     std::vector<Part> all(PARTS_ACROSS * PARTS_DOWN);
     Square<Step> hessian = Square<Step>::zeros(), ofGradient = hessian;  // its covariance
-    for (const Row<Step>& row : rows)
+    const std::vector<Square<Step>> noises = problem.noiseInDerivatives(fit.model, rows, noise2);
+    for (size_t i = 0; i < rows.size(); i++)
     {
+        const Row<Step>& row = rows[i];
         Part& part = all[parts[row.match]];
         const double weight = 1 / (1 + row.r2 * perScale2);
         addProduct(row.J, bend * weight, part.hessian);
+        part.hessian -= noises[i] * bend;
         addProduct(row.J, noise2 * square(meanSlope), ofGradient);
         part.gradient += weight * row.r * row.J;
         part.along += weight * row.J;
@@ -124,10 +128,9 @@ Square<typename Problem::Step> covarianceOf(
     {
         mirror(part.hessian);
         hessian += part.hessian;
-        addProduct(part.along, SHARED * noise2, ofGradient);
+        addProduct(part.along, shared * noise2, ofGradient);
     }
     mirror(ofGradient);
-    hessian -= problem.noiseInDerivatives(fit.model, rows, noise2) * bend;
     const double least = noise2 / square(largest);
     Square<Step> unknown;
     const Square<Step> inverse = inverseWithFloor(hessian, least, &unknown);

@@ -5,9 +5,12 @@
 #include <bitset>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <set>
 
 #include "../precomp.hpp"
 #include "opencv2/iib/verdict.hpp"
+#include "opencv2/imgproc.hpp"
 #include "../common/points.hpp"
 
 namespace cv::iib {
@@ -15,8 +18,9 @@ namespace {
 
 double square(double x) { return x * x; }
 
-const int CELLS = 32;      // of the diagonal of what the points span
-const double MODELS = 10;  // that a sample proposes, at most
+const int CELLS = 32;           // of the diagonal of what the points span
+const double CERTAINLY = 1e-3;  // chance
+const double MODELS = 10;       // that a sample proposes, at most
 
 //! The natural logarithm of n!, to ten digits (Abramowitz and Stegun, 6.1.40). C's lgamma writes its sign where all threads do.
 double logFactorial(int n)
@@ -33,64 +37,34 @@ double logBinomial(int n, int k)
     return (logFactorial(n) - logFactorial(k) - logFactorial(n - k)) / std::log(10.);
 }
 
-//! Matches of which some agree with a fundamental matrix or a homography, as errorsOfWrongMatches() has them.
-class MarkedMatches
+//! The chance that k or more of n matches agree, each by a chance of its own.
+double chanceOfSoMany(int n, int k, double each)
 {
-public:
-    typedef Matx33d Model;
+    if (k <= 0 || each >= 1)
+        return 1;
+    double sum = 0;
+    for (int j = k; j <= n; j++)
+        sum += std::pow(10., logBinomial(n, j) + j * std::log10(each) + (n - j) * std::log10(1 - each));
+    return sum;
+}
 
-    MarkedMatches(const Mat& points1, const Mat& points2, bool epipolar)
-        : first_(points1), second_(points2), epipolar_(epipolar)
-    {
-    }
-
-    int size() const { return first_.rows; }
-
-    MarkedMatches mixed(const std::vector<int>& order) const
-    {
-        MarkedMatches other(first_, second_.clone(), epipolar_);
-        for (int i = 0; i < size(); i++)
-            second_.row(order[i]).copyTo(other.second_.row(i));
-        return other;
-    }
-
-    //! The one of those that are marked; false where these are too few or tell none.
-    bool fit(const Verdict::Marks& marks, Matx33d& model) const
-    {
-        Mat chosen[2];
-        for (int i = 0; i < size(); i++)
-            if (marks[i])
-            {
-                chosen[0].push_back(first_.row(i));
-                chosen[1].push_back(second_.row(i));
-            }
-        if (chosen[0].rows < (epipolar_ ? 8 : 4))
-            return false;
-        const Mat found = epipolar_ ? findFundamentalMat(chosen[0], chosen[1], FM_8POINT)
-                                    : findHomography(chosen[0], chosen[1], 0);
-        if (found.size() != Size(3, 3))
-            return false;
-        model = found;
-        return true;
-    }
-
-    void squaredErrors(const Matx33d& model, std::vector<double>& errors) const
-    {
-        errors.resize(size());
-        for (int i = 0; i < size(); i++)
+/** The fundamental matrix or homography of the matches that are marked.
+@return nothing where these are too few or lie in one line. */
+Mat modelOf(const Mat& points1, const Mat& points2, const Verdict::Marks& marks, bool epipolar)
+{
+    Mat chosen[2];
+    for (int i = 0; i < points1.rows; i++)
+        if (marks[i])
         {
-            const Point2d &a = first_.at<Point2d>(i), &b = second_.at<Point2d>(i);
-            const Vec3d p(a.x, a.y, 1), q(b.x, b.y, 1), there = model * p, back = model.t() * q;
-            const double line2 = square(there[0]) + square(there[1]) + square(back[0]) + square(back[1]);
-            const Point2d beside(b.x - there[0] / there[2], b.y - there[1] / there[2]);
-            errors[i] = epipolar_ ? square(q.dot(there)) / line2 : beside.ddot(beside);
+            chosen[0].push_back(points1.row(i));
+            chosen[1].push_back(points2.row(i));
         }
-    }
-
-private:
-    Mat first_, second_;
-    bool epipolar_;
-};
+    if (chosen[0].rows < (epipolar ? 8 : 4))
+        return Mat();
+    const Mat found = epipolar ? findFundamentalMat(chosen[0], chosen[1], FM_8POINT)
+                               : findHomography(chosen[0], chosen[1], 0);
+    return found.size() == Size(3, 3) ? found : Mat();
+}
 
 double diagonal(const Size2d& size) { return std::hypot(size.width, size.height); }
 
@@ -98,21 +72,37 @@ double diagonal(const Size2d& size) { return std::hypot(size.width, size.height)
 
 Verdict::Verdict(const Mat& points1, const Mat& points2)
 {
-    const Mat* const all[] = {&points1, &points2};
-    for (int image = 0; image < 2; image++)
+    const bool oneImage = points1.data == points2.data;
+    for (int i = 0; i < points1.rows; i++)
+        shifts_.push_back(points2.at<Point2d>(i) - points1.at<Point2d>(i));
+    firsts_.resize(points1.rows);
+    std::iota(firsts_.begin(), firsts_.end(), 0);
+    for (int round = 0; round < 2; round++)  // what is outermost, places tell, however many matches they have
     {
-        const Mat& points = *all[image];
-        const Rect2d span = spanOf(points);
-        const double cell = diagonal(span.size()) / CELLS;
-        for (int i = 0; i < points.rows; i++)
+        const Mat* const all[] = {&points1, &points2};
+        for (int image = 0; image < 2; image++)
         {
-            const double* p = points.ptr<double>(i);
-            const auto within = [&](double place) {
-                return (int)std::clamp(place / cell, 0., (double)CELLS);
-            };
-            cells_[image].push_back(within(p[1] - span.y) * (CELLS + 1) + within(p[0] - span.x));
+            Mat ofPlaces;
+            for (int i : firsts_)
+                ofPlaces.push_back(all[image]->row(i));
+            const Rect2d span = spanOf(ofPlaces);
+            const double cell = cell_ = diagonal(span.size()) / CELLS;
+            cells_[image].clear();
+            for (int i = 0; i < points1.rows; i++)
+            {
+                const double* p = all[image]->ptr<double>(i);
+                const auto within = [&](double place) {
+                    return (int)std::clamp(place / cell, 0., (double)CELLS);
+                };
+                cells_[image].push_back(within(p[1] - span.y) * (CELLS + 1) + within(p[0] - span.x));
+            }
+            spans_[image] = span.size();
         }
-        spans_[image] = span.size();
+        std::set<std::pair<int, int>> known;
+        firsts_.clear();
+        for (int i = 0; i < points1.rows; i++)
+            if (oneImage || known.insert({cells_[0][i], cells_[1][i]}).second)
+                firsts_.push_back(i);
     }
 }
 
@@ -133,25 +123,50 @@ std::vector<double> Verdict::sumsOfPlaces(const std::vector<double>& values) con
     return sums;
 }
 
+Verdict::Marks Verdict::elsewhere(const Marks& matches, const Marks& others) const
+{
+    Marks result = matches;
+    for (const std::vector<int>& cells : cells_)
+    {
+        std::bitset<(CELLS + 1) * (CELLS + 1)> taken;
+        for (size_t i = 0; i < others.size(); i++)
+            if (others[i])
+                taken.set(cells[i]);
+        for (size_t i = 0; i < result.size(); i++)
+            result[i] = result[i] && !taken[cells[i]];
+    }
+    return result;
+}
+
 int Verdict::places(const Marks& matches) const { return std::min(places(matches, 0), places(matches, 1)); }
 
 double Verdict::chance(Distance distance, double limit, const std::vector<double>& wrong) const
 {
+    const int few = 3;
     // Of a line, the nearer of two distances counts, in either image; of a point, that in the second one.
     const auto along = [&](const Size2d& span) { return 2 * limit * diagonal(span) / span.area(); };
     const double anywhere = distance == FROM_LINE ? std::max(along(spans_[0]), along(spans_[1]))
                                                   : CV_PI * limit * limit / spans_[1].area();
     const auto near = std::count_if(wrong.begin(), wrong.end(), [&](double e) { return e < limit * limit; });
-    // If none of so many is near, the chance may still be that of one more.
-    const double least = wrong.empty() ? 0 : 1. / (double)(wrong.size() + 1);
-    return std::clamp(
-            std::max((double)near / std::max<size_t>(wrong.size(), 1), least), std::min(anywhere, 1.), 1.);
+    double share = 0;
+    if (distance == FROM_POINT && !wrong.empty())
+        // If none of so many is near, the chance may still be that of one more.
+        share = std::max((double)near / (double)wrong.size(), 1. / (double)(wrong.size() + 1));
+    else if (near >= few || (int)wrong.size() < few)
+        share = (double)near / std::max<double>((double)wrong.size(), 1);
+    else
+    {
+        std::vector<double> nearest = wrong;
+        std::nth_element(nearest.begin(), nearest.begin() + few - 1, nearest.end());
+        share = few / (double)wrong.size() * limit / std::sqrt(nearest[few - 1]);
+    }
+    return std::clamp(share, std::min(anywhere, 1.), 1.);
 }
 
 double Verdict::chanceOfPlaces(const Marks& all, double chance, int image) const
 {
     std::vector<int> counts((CELLS + 1) * (CELLS + 1));
-    for (size_t i = 0; i < all.size(); i++)
+    for (int i : firsts_)
         counts[cells_[image][i]] += all[i];
     double sum = 0, places = 0;
     for (int count : counts)
@@ -178,6 +193,82 @@ double Verdict::logFalseAlarms(const Marks& all, const Marks& agreeing, int samp
     return most;
 }
 
+double Verdict::countOfOneShift(const Marks& matches, const std::function<bool(int)>& isInside) const
+{
+    const double near = 1 / 25.;  // of a cell: a pixel of a small image
+    std::vector<int> all;
+    for (int i : firsts_)
+        if (matches[i] && isInside(i))
+            all.push_back(i);
+    if (all.empty())
+        return 0;
+    Point2d middle;
+    for (double Point2d::*axis : {&Point2d::x, &Point2d::y})
+    {
+        const auto half = all.begin() + (ptrdiff_t)all.size() / 2;
+        std::nth_element(all.begin(), half, all.end(),
+                [&](int a, int b) { return shifts_[a].*axis < shifts_[b].*axis; });
+        middle.*axis = shifts_[*half].*axis;
+    }
+    return (double)std::count_if(
+            all.begin(), all.end(), [&](int i) { return norm(shifts_[i] - middle) < near * cell_; });
+}
+
+bool Verdict::isOfSmallParts(const Marks& agreeing, int sampleSize, double chance) const
+{
+    const int side = CELLS + 1, mostParts = 4;
+    const double mostShifted = .6;
+    const double share[] = {.5, .8, .8, .8};          // of the matches that agree, in so many parts and one
+    const Size sizes[] = {{5, 5}, {12, 3}, {3, 12}};  // cells: a twentieth of the image
+    const auto count = std::count_if(firsts_.begin(), firsts_.end(), [&](int i) { return agreeing[i]; });
+    for (const std::vector<int>& cells : cells_)
+    {
+        Mat counts(side, side, CV_64F, Scalar(0)), outside(side, side, CV_8U, Scalar(1)), sums;
+        for (int i : firsts_)
+            counts.at<double>(cells[i] / side, cells[i] % side) += agreeing[i];
+        double inside = 0, shifted = 0;
+        for (int part = 0; part < mostParts; part++)
+        {
+            double most = 0;
+            Rect best;
+            integral(counts, sums, CV_64F);
+            for (const Size& size : sizes)
+                for (int y = 0; y + size.height <= side; y++)
+                    for (int x = 0; x + size.width <= side; x++)
+                    {
+                        const double sum =
+                                sums.at<double>(y, x) + sums.at<double>(y + size.height, x + size.width) -
+                                sums.at<double>(y, x + size.width) - sums.at<double>(y + size.height, x);
+                        if (sum > most)
+                        {
+                            most = sum;
+                            best = Rect(Point(x, y), size);
+                        }
+                    }
+            counts(best) = 0;
+            const auto isInside = [&](int i) { return best.contains({cells[i] % side, cells[i] / side}); };
+            shifted += countOfOneShift(agreeing, isInside);
+            outside(best) = 0;
+            inside += most;
+            const bool isShifted = shifted > mostShifted * inside;
+            if (inside <= share[part] * (double)count || (part > 0 && !isShifted))
+                continue;
+            int others = 0, beside = 0;
+            for (int i : firsts_)
+                if (outside.at<uchar>(cells[i] / side, cells[i] % side))
+                {
+                    others++;
+                    beside += agreeing[i];
+                }
+            // Some of the others the pose was fitted to; more, where a shift left it free to turn.
+            const int fitted = isShifted ? 2 * sampleSize : sampleSize;
+            if (2 * beside < others && chanceOfSoMany(others, beside - fitted, chance) > CERTAINLY)
+                return true;
+        }
+    }
+    return false;
+}
+
 double Verdict::logFalseAlarms(const std::vector<double>& squared, const std::vector<double>& wrong,
         Distance distance, int sampleSize, const std::vector<double>& limits, double* best) const
 {
@@ -193,6 +284,20 @@ double Verdict::logFalseAlarms(const std::vector<double>& squared, const std::ve
             *best = limit;
     }
     return least + std::log10((double)limits.size());
+}
+
+std::vector<double> errorsOfWrongMatches(
+        const Verdict& verdict, const std::function<double(int, int)>& errorOf)
+{
+    const size_t enough = 4096;
+    const std::vector<int>& firsts = verdict.firstOfPlaces();
+    const int n = (int)firsts.size();
+    RNG random(0x5eed);
+    std::vector<double> errors;
+    for (int round = 1; round < n && errors.size() < enough; round++)
+        for (int i = 0; i < n; i++)
+            errors.push_back(errorOf(firsts[i], firsts[(i + random.uniform(1, n)) % n]));
+    return errors;
 }
 
 Verdict::Marks within(double limit, const std::vector<double>& squared)
@@ -219,12 +324,20 @@ double logFalseAlarms(
     Verdict::Marks agreeing(first.rows);
     std::transform(
             marks.begin<uchar>(), marks.end<uchar>(), agreeing.begin(), [](uchar mark) { return mark != 0; });
-    const MarkedMatches matches(first, second, epipolar);
-    Matx33d model;
-    std::vector<double> wrong;
-    if (matches.fit(agreeing, model))
-        wrong = errorsOfWrongMatches(matches, model);
     const Verdict verdict(first, second);
+    std::vector<double> wrong;
+    const Mat found = modelOf(first, second, agreeing, epipolar);
+    if (!found.empty())
+    {
+        const Matx33d model(found);
+        wrong = errorsOfWrongMatches(verdict, [&](int i, int j) {
+            const Point2d &a = first.at<Point2d>(i), &b = second.at<Point2d>(j);
+            const Vec3d p(a.x, a.y, 1), q(b.x, b.y, 1), there = model * p, back = model.t() * q;
+            const double line2 = square(there[0]) + square(there[1]) + square(back[0]) + square(back[1]);
+            const Point2d beside(b.x - there[0] / there[2], b.y - there[1] / there[2]);
+            return epipolar ? square(q.dot(there)) / line2 : beside.ddot(beside);
+        });
+    }
     return verdict.logFalseAlarms(Verdict::Marks(first.rows, true), agreeing, epipolar ? 7 : 4,
             verdict.chance(epipolar ? Verdict::FROM_LINE : Verdict::FROM_POINT, threshold, wrong));
 }

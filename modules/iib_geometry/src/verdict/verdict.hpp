@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "opencv2/core.hpp"
@@ -15,7 +16,7 @@ class Verdict
 public:
     typedef std::vector<bool> Marks;  //!< of the matches
 
-    //! Both N x 2, CV_64F, pixels.
+    //! Both N x 2, CV_64F, pixels; of matches with what is no image, the same points twice.
     Verdict(const Mat& points1, const Mat& points2);
 
     //! What a match's error is the distance from.
@@ -35,16 +36,28 @@ public:
             Distance distance, int sampleSize, const std::vector<double>& limits,
             double* best = nullptr) const;
 
-    /** Chance that a wrong match is so near, 0 to 1: as of points that are anywhere, or, where points gather, as those errors tell; at
-    least that of one in more than there are. */
+    /** Chance that a wrong match is so near, 0 to 1: as of points that are anywhere, or, where points gather, as those errors tell. Where
+    hardly one of them is so near, of a point it is at least that of one in more than there are, and of a line, from which errors are as
+    frequent at any small distance, that of the nearest few. */
     double chance(Distance distance, double limit, const std::vector<double>& wrong) const;
 
     /** The same of matches that agree or not.
     @param chance that a wrong match agrees. */
     double logFalseAlarms(const Marks& all, const Marks& agreeing, int sampleSize, double chance) const;
 
+    /** Whether more than half of the matches that agree are in one small part of an image, or four fifths in up to four each of which is only
+    shifted, and the others agree no more than chance would have it: captions are no scene.
+    @param chance that a wrong match agrees. */
+    bool isOfSmallParts(const Marks& agreeing, int sampleSize, double chance) const;
+
+    //! Of the matches from one place to one place, the first: neighbours are right or wrong together.
+    const std::vector<int>& firstOfPlaces() const { return firsts_; }
+
     //! Of a number of each match: the sums over places of the first image that have any.
     std::vector<double> sumsOfPlaces(const std::vector<double>& values) const;
+
+    //! Matches in places in which none of the others is, in either image.
+    Marks elsewhere(const Marks& matches, const Marks& others) const;
 
     //! Number of places of the matches, in the image where they have fewer.
     int places(const Marks& matches) const;
@@ -54,31 +67,24 @@ public:
 
 private:
     int places(const Marks& matches, int image) const;
-    //! That one of a place's matches agrees: the mean over all places.
+    //! That one of a place's matches agrees: the mean over all places. Those from one place to one place are one.
     double chanceOfPlaces(const Marks& all, double chance, int image) const;
 
+    //! Of matches in a part of the image, those that are shifted like most.
+    double countOfOneShift(const Marks& matches, const std::function<bool(int)>& isInside) const;
+
     std::vector<int> cells_[2];  // of the matches
+    std::vector<Point2d> shifts_;
+    double cell_ = 0;  // pixels
+    std::vector<int> firsts_;
     Size2d spans_[2];
 };
 
-/** Squared errors of matches between points of different matches, about 4000: what a model makes of matches that are wrong, where
-the points are. */
-template <class Problem>
-std::vector<double> errorsOfWrongMatches(const Problem& problem, const typename Problem::Model& model)
-{
-    const int enough = 4096, n = problem.size();
-    RNG random(0x5eed);
-    std::vector<int> order(n);
-    std::vector<double> all, errors;
-    for (int round = 1; round < n && (int)all.size() < enough; round++)
-    {
-        for (int i = 0; i < n; i++)
-            order[i] = (i + random.uniform(1, n)) % n;
-        problem.mixed(order).squaredErrors(model, errors);
-        all.insert(all.end(), errors.begin(), errors.end());
-    }
-    return all;
-}
+/** Squared errors of wrong matches, about 4000: of those between a point of one match and the other point of another one. Of neighbours
+one counts: mixed, they are not wrong.
+@param errorOf squared error of the first point of one match with the second point of another. */
+std::vector<double> errorsOfWrongMatches(
+        const Verdict& verdict, const std::function<double(int, int)>& errorOf);
 
 //! Which squared errors are below limit^2.
 Verdict::Marks within(double limit, const std::vector<double>& squared);

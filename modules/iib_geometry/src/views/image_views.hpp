@@ -35,6 +35,7 @@ public:
     @throws cv::Exception (StsBadArg) for another mask. */
     ImageViews(const Mat& image, const Mat& mask, int maxFeatures);
 
+    const Mat& image() const { return image_; }
     Size size() const { return image_.size(); }
 
     //! Whether a point lies in the image and its mask.

@@ -94,15 +94,15 @@ TEST(RelativePose, covariance_knows_of_errors_that_neighbours_share)
 }
 
 // Five errors are small since five numbers were fitted to them.
-TEST(RelativePose, a_scale_settles_by_what_no_number_was_fitted_to)
+TEST(RelativePose, a_scale_is_that_of_what_no_number_was_fitted_to)
 {
     std::vector<double> squared(12, .01);
     double scale = 0;
-    EXPECT_TRUE(settles(squared, 1, 5, scale));
+    EXPECT_TRUE(findScale(squared, 1, 5, scale));
     EXPECT_NEAR(1.4826 * .1 * std::sqrt(12. / 7), scale, 1e-9);
     std::fill(squared.begin(), squared.begin() + 4, 4.);
-    EXPECT_FALSE(settles(squared, 1, 5, scale));
-    EXPECT_FALSE(settles(std::vector<double>(5, .01), 1, 5, scale));
+    EXPECT_FALSE(findScale(squared, 1, 5, scale));
+    EXPECT_FALSE(findScale(std::vector<double>(5, .01), 1, 5, scale));
 }
 
 // The residuals tell it where none is given, and where one is given that is too narrow by far, at which it cuts errors off.

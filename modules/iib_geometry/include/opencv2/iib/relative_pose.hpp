@@ -14,17 +14,21 @@ namespace iib {
 
 A point \f$X\f$ in the axes of camera 1 is \f$RX + \lambda t\f$ in those of camera 2; matches do not tell the length
 \f$\lambda\f$. Samples of five matches propose poses @cite Nister2004. Those that agree best are polished by Levenberg-Marquardt on
-Sampson's error (@cite HartleyZisserman2004, equation 11.9) under Cauchy's loss, cut off at three scales. Wrong matches are
-expected; the same input gives the same answer, whatever the number of threads.
+Sampson's error (@cite HartleyZisserman2004, equation 11.9) under Cauchy's loss. Where few samples were right, further ones are taken
+from the matches that agree with the best pose so far. Of the candidates that one is chosen that has the least sum of squared errors, cut
+off at seven thresholds from .35 to 3 pixels, of points in front of both cameras. Wrong matches are expected; the same input gives the
+same answer, whatever the number of threads, and swapped images give the inverse.
 
 Where the matches that agree are not more than chance there is no pose: if poses that agree as well are expected more than once
 in a thousand tries among wrong matches (the number of false alarms, @cite MoisanStival2004). It is counted in matches, and in cells
 of a 32nd of the diagonal of what the points span, since matches beside each other may be wrong together; the larger number counts. How
-often a wrong match agrees is what points of different matches do with the pose, so that a skyline is no pose.
+often a wrong match agrees is what points of different matches do with the pose, so that a skyline is no pose. Nor is there one where
+most of the places that agree are in a twentieth of an image, and the others agree no more than chance would have it, as with a caption.
 
-There is none either where a second pose, turned by 3 degrees or more and far outside of the covariance, explains the matches as
-well but for what noise may give, as two do of a plane: the other one of the plane that most of the matches lie on is looked for.
-Where it turns less, or nothing tells the direction of t, the covariance holds it. Of exact planes, 200 and 800 matches
+There is none either where a second pose, far outside of the covariance, explains the matches as well but for what noise may give. One
+of the plane that most of the matches lie on must be turned by 3 degrees or more, another one by 6. Where it turns less, or nothing shows
+the direction of t, the covariance is enlarged to reach it. Matches behind a camera, or of a parallax of which so many are wrong that the
+near ones may be near by chance, count neither in the last fit nor in the covariance. Of exact planes, 200 and 800 matches
 with noise of .2 pixels, half of the poses or more are right, and a third or more refused (`of_a_plane_is_right_or_refused` of RelativePose).
 
 How often that errs, with 2000 points by the recommended chain, propagated: none of 446 pairs of images of different places had a pose; of 144
@@ -53,13 +57,16 @@ Matches that cv::iib::refineMatches refined make the pose more accurate where th
     only turned or all the points are far away, has a deviation of a radian or more. Of 10 matches with noise of a pixel 75 % of
     the errors are inside the told 95 %, of 15 or more 90 %
 @param reason if not null: why there is no pose, a sentence; empty if there is one
+@param covariances N x 3, CV_32F or CV_64F, pixels^2: of the places of the matches, xx, xy, yy, as refineMatches and propagateMatches give them. What
+    was located less exactly then counts less in the choice among poses: by 1 / sqrt(1 + sum of both variances). Empty: all count alike
 @return false, with R, t and covariance empty (NaN where their size is fixed), if the matches that agree are not more than
     chance, or two poses explain them as well
 @throws cv::Exception for points of a wrong type or of different numbers, points that are not finite, matrices that are
-    not a camera's, or a scale that is negative or not finite */
+    not a camera's, covariances of another type or number, or a scale that is negative or not finite */
 CV_EXPORTS_W bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraMatrix1,
         InputArray cameraMatrix2, OutputArray R, OutputArray t, OutputArray inliers = noArray(),
-        double scale = 0, OutputArray covariance = noArray(), CV_OUT String* reason = nullptr);
+        double scale = 0, OutputArray covariance = noArray(), CV_OUT String* reason = nullptr,
+        InputArray covariances = noArray());
 
 //! @}
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spread.hpp"
 
+#include <algorithm>
+#include <set>
+
 #include "../precomp.hpp"
 #include "opencv2/imgproc.hpp"
 
@@ -8,7 +11,12 @@ namespace cv::iib {
 namespace {
 
 const int CELLS_ACROSS = 8;
-const int SAMPLES_ACROSS = 32;  // of the reference, at which is asked what both images have
+const int LEAST_PLACE = 15, LEAST_MATCHES = 80;  // cells of a group: logos have fewer, or fewer matches
+const double LEAST_SPREAD = .12;                 // of what has points: a logo spans less
+const double LEAST_WHOLE = .05;                  // of what both images show, whether it has points or not
+/* Of the cells that matches of any points would be in, those that agreeing ones are in. Captions and logos at two ends of a picture
+have .2 at most, pairs under other light .41 at least. */
+const double LEAST_SCATTER = .33;
 
 typedef std::vector<Point2f> Points;
 
@@ -81,42 +89,51 @@ double scatterOf(const Points& agreeing, const Points& points)
     return (double)(matches.size() - std::count(matches.begin(), matches.end(), 0)) / std::max(expected, 1.);
 }
 
+//! Of square cells of this side.
+int largestGroup(const Points& points, double side)
+{
+    std::set<std::pair<int, int>> cells;
+    for (const Point2f& p : points)
+        cells.insert({cvFloor(p.x / side), cvFloor(p.y / side)});
+    int largest = 0;
+    while (!cells.empty())
+    {
+        std::vector<std::pair<int, int>> group = {cells.extract(cells.begin()).value()};
+        for (size_t k = 0; k < group.size(); k++)
+            for (int neighbour = 0; neighbour < 9; neighbour++)
+            {
+                const auto cell =
+                        cells.find({group[k].first + neighbour % 3 - 1, group[k].second + neighbour / 3 - 1});
+                if (cell != cells.end())
+                    group.push_back(cells.extract(cell).value());
+            }
+        largest = std::max(largest, (int)group.size());
+    }
+    return largest;
+}
+
+double ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
+
 }  // namespace
 
-Spread::Spread(const AlignedPoints& points, const Verdict::Marks& agree, const Matx33d& transform,
-        const WorkingPair& pair, int sampleSize)
+Spread::Spread(const SharedPart& reference, const SharedPart& image, int sampleSize)
+    : connected(CELLS), area(0), whole(1), scatter(0)
 {
-    Points agreeing;
-    for (size_t i = 0; i < agree.size(); i++)
-        if (agree[i])
-            agreeing.push_back(Point2f(points.reference.at<Point2d>((int)i)));
-    const Matx33d toImage = transform.inv();
-    double least = std::numeric_limits<double>::max();
-    for (int which = 0; which < 2; which++)
+    for (const SharedPart* part : {&reference, &image})
     {
-        Points common;  // in the reference
-        for (const KeyPoint& keypoint : points.keypoints[which])
-        {
-            const Point2d here = keypoint.pt, there = moved(which ? transform : toImage, here);
-            if (pair.shows(!which, there))
-                common.push_back(Point2f(which ? there : here));
-        }
-        least = std::min(least, areaOf(common));
-        scatter = std::max(scatter, scatterOf(agreeing, common));
+        const double both = std::max(part->area, 1.);
+        connected = std::min(connected, largestGroup(part->agreeing, cellOf(both)));
+        area = std::max(area, ratio(areaOf(part->agreeing), areaOf(part->points)));
+        whole = std::min(whole, areaWithout(sampleSize, part->agreeing) / both);
+        scatter = std::max(scatter, scatterOf(part->agreeing, part->points));
     }
-    area = least > 0 ? areaOf(agreeing) / least : 0;
+}
 
-    const Size size = pair.referenceSize();
-    int both = 0;
-    for (int row = 0; row < SAMPLES_ACROSS; row++)
-        for (int column = 0; column < SAMPLES_ACROSS; column++)
-        {
-            const Point2d p((column + .5) * size.width / SAMPLES_ACROSS - .5,
-                    (row + .5) * size.height / SAMPLES_ACROSS - .5);
-            both += pair.shows(0, p) && pair.shows(1, moved(toImage, p));
-        }
-    whole = areaWithout(sampleSize, agreeing) * SAMPLES_ACROSS * SAMPLES_ACROSS /
-            (std::max(both, 1) * (double)size.area());
+bool Spread::isPlace(int matches) const { return connected >= LEAST_PLACE && matches >= LEAST_MATCHES; }
+
+bool Spread::isEverywhere() const
+{
+    return area >= LEAST_SPREAD && whole >= LEAST_WHOLE && scatter >= LEAST_SCATTER;
 }
 
 }  // namespace cv::iib

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "judgement.hpp"
+
+#include "opencv2/iib/alignment.hpp"
+#include "sensor_marks.hpp"
+#include "../verdict/overlay.hpp"
+#include "../verdict/parallax.hpp"
+#include "../verdict/spread.hpp"
+
+namespace cv::iib {
+namespace {
+
+const double MOST_PARALLAX = .25;  // of the places that agree may move as if the camera had moved
+const double LEAST_PARALLAX = 6;   // working pixels: shadows of another light move by less
+const double MOST_ERROR = .25;     // of the image's diagonal
+const double LEAST_TOGETHER = .6;  // of the matches of a part that moves otherwise
+
+const char* const NAMES[] = {"a translation", "a similarity", "an affine transform", "a homography"};
+
+int countOf(const Verdict::Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); }
+
+struct Parts
+{
+    SharedPart reference, image;
+    Spread spread;
+
+    Parts(const FittedTransform& fitted, const Evidence& evidence)
+        : reference(evidence.pair.sharedPart(0, evidence.points, fitted.agree, fitted.transform())),
+          image(evidence.pair.sharedPart(1, evidence.points, fitted.agree, fitted.transform())),
+          spread(reference, image, fitted.problem.sampleSize())
+    {
+    }
+};
+
+//! The matches beside a transform by so much, working pixels, or more, that the camera's motion explains.
+Verdict::Marks movedBeside(const FittedTransform& fitted, const Evidence& evidence, double distance)
+{
+    const AlignedPoints& points = evidence.points;
+    return movedByParallax(points.reference, points.image, fitted.transform(),
+            within(std::max(2 * fitted.limit, distance), fitted.fit.squared), fitted.limit, evidence.verdict);
+}
+
+//! Whether a transform of more freedom is that of another part of the images than the one in which the simple one has its matches.
+bool isElsewhere(const FittedTransform& richer, const FittedTransform& simple, const Evidence& evidence)
+{
+    return isOfAnotherPart(richer, simple) && simple.isCertain(evidence.verdict, evidence.tried) &&
+           Parts(simple, evidence).spread.isPlace(simple.count());
+}
+
+std::string reasonAgainstModel(
+        const std::vector<FittedTransform>& all, size_t judged, const Evidence& evidence)
+{
+    if (!isBetter(all.back(), all[judged]) || !all.back().isCertain(evidence.verdict, evidence.tried) ||
+            isElsewhere(all.back(), all[judged], evidence))
+        return "";
+    size_t k = judged + 1;
+    while (isBetter(all.back(), all[k]))
+        k++;
+    const auto near = [&](const FittedTransform& f) { return countOf(within(all[k].limit, f.fit.squared)); };
+    return format("the images differ by more than %s: %s agrees with %d matches in place of %d, and "
+                  "better",
+            NAMES[all[judged].model], nameOf(all[k].model), near(all[k]), near(all[judged]));
+}
+
+std::string reasonOfChance(const FittedTransform& fitted)
+{
+    return format("the transform that agrees best has %d of %d matches, no more than chance may give: "
+                  "the images may not show the same",
+            fitted.count(), fitted.problem.size());
+}
+
+//! Whether most matches agree with one similarity, as a part that moved or a second plane has it and a scene with depth has not.
+bool isOneMotion(const Verdict::Marks& moved, const Evidence& evidence)
+{
+    return FittedTransform(marked(evidence.points, moved), ALIGN_SIMILARITY).count() >
+           LEAST_TOGETHER * countOf(moved);
+}
+
+//! What moves otherwise than the transform: a camera that moved, or a part of what it sees.
+void judgeMotion(const FittedTransform& fitted, const Evidence& evidence, Judgement& judgement)
+{
+    const Verdict& verdict = evidence.verdict;
+    Verdict::Marks moved = movedBeside(fitted, evidence, LEAST_PARALLAX);
+    // Where the transform has matches, too, the others are wrong: a letter that repeats is no camera's motion.
+    moved = verdict.elsewhere(moved, fitted.agree);
+    if (verdict.places(moved) <= MOST_PARALLAX * verdict.places(fitted.agree))
+        return;
+    if (isOneMotion(moved, evidence))
+        judgement.note = format(
+                "%d matches of another part agree with each other and lie beside the transform: that part "
+                "moved otherwise, or is nearer or farther",
+                countOf(moved));
+    else
+        judgement.against = format(
+                "%d matches agree with one transform, and %d more are beside it along lines through one "
+                "point: the camera moved through a scene that is not flat (parallax; findRelativePose is for "
+                "such images)",
+                fitted.count(), countOf(moved));
+}
+
+}  // namespace
+
+size_t simplestTrue(const std::vector<FittedTransform>& all, const Evidence& evidence)
+{
+    size_t best = 0;
+    for (size_t k = 1; k < all.size(); k++)
+        if (!all[best].exists() ||
+                (gainOf(all[k], all[best]) > NEEDED_GAIN && !isElsewhere(all[k], all[best], evidence)))
+            best = k;
+    return best;
+}
+
+Judgement judge(
+        const std::vector<FittedTransform>& all, size_t judged, const Evidence& evidence, const Mat& errors)
+{
+    const FittedTransform& fitted = all[judged];
+    if (!fitted.exists())
+        return {"the images have too few matches", false, ""};
+    Judgement judgement = {reasonAgainstModel(all, judged, evidence), true, ""};
+    if (!judgement.against.empty())
+        return judgement;
+    const Parts parts(fitted, evidence);
+    if (!fitted.isCertain(evidence.verdict, evidence.tried))
+        return {reasonOfChance(fitted), false, ""};
+    const FittedTransform& richest =
+            all.back().exists() && !isOfAnotherPart(all.back(), fitted) ? all.back() : fitted;
+    judgeMotion(richest, evidence, judgement);
+    if (!judgement.against.empty())
+        return judgement;
+    if (areOfTheSensor(fitted, evidence))
+        return {"the matches are single pixels that stay where they are: hot pixels or dust of the camera, "
+                "while larger points "
+                "moved; mask or correct them",
+                false, ""};
+    if (isOverlay(parts.reference, parts.image))
+        return {"the images are equal to the pixel in some parts and differ in the others: a logo, a caption "
+                "or a frame "
+                "lies over both, or a part of the vehicle shows; mask it",
+                false, ""};
+    const Spread& spread = parts.spread;
+    if (!spread.isPlace(fitted.count()) && !spread.isEverywhere())
+        return {format("the images agree in small parts alone, with %d matches over %.0f %% of what both "
+                       "could show: too "
+                       "little to tell a place from a logo or a caption",
+                        fitted.count(), 100 * std::min(spread.area, spread.whole)),
+                false, ""};
+    if (!(norm(errors, NORM_INF) < MOST_ERROR * evidence.pair.imageDiagonal()))
+        return {format("%d matches agree, but they leave the image's corners uncertain by a quarter of its "
+                       "size",
+                        fitted.count()),
+                false, ""};
+    if (!spread.isEverywhere() && judgement.note.empty())
+        judgement.note = format(
+                "the images agree in one part of %.0f %% of what both could show; elsewhere the transform is "
+                "extrapolated",
+                100 * std::min(spread.area, 1.));
+    return judgement;
+}
+
+double deviationBeside(const FittedTransform& fitted, const Evidence& evidence)
+{
+    const Verdict& verdict = evidence.verdict;
+    Verdict::Marks moved = movedBeside(fitted, evidence, 0);
+    double sum = 0;
+    for (size_t i = 0; i < moved.size(); i++)
+    {
+        moved[i] = moved[i] && fitted.fit.squared[i] < square(LEAST_PARALLAX);
+        sum += moved[i] ? fitted.fit.squared[i] : 0;
+    }
+    return verdict.places(moved) > MOST_PARALLAX * verdict.places(fitted.agree)
+                   ? std::sqrt(sum / countOf(moved))
+                   : 0;
+}
+
+}  // namespace cv::iib

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pose_fit.hpp"
+
+#include "../verdict/pose_verdict.hpp"
+
+namespace cv::iib {
+namespace {
+
+typedef std::vector<double> Errors;
+
+const double FIRST_THRESHOLD = 1.4, LAST_THRESHOLD = 12;  // scales
+const int THRESHOLDS = 7;
+const double FINELY = 1e-9, ROUGHLY = 1e-3;  // by how much less of its loss a pose is polished
+const int FEWEST = 100, FEW_TRIALS = 1000, MANY_TRIALS = 500, MOST_TRIALS = 12000;
+const double MISSED = 1e-3;         // probability that no sample was of right matches alone
+const int ROUNDS = 3;               // of samples from what agrees with the best pose,
+const double BETTER = .99;          // while its sum falls to less than this of it
+const double MOST_OF_REFINED = .6;  // pixels: matches that are not refined have more
+const double WIDER = 4;             // one scale that is tried over the one before
+const int FEW = 30;                 // matches: all of them count
+
+//! What the errors of a pose amount to: the sum over all thresholds.
+double misfit(const Errors& squared, double scale, const Errors& weights)
+{
+    double perThreshold2[THRESHOLDS], sum = 0;
+    for (int k = 0; k < THRESHOLDS; k++)
+        perThreshold2[k] = 1 / square(scale * FIRST_THRESHOLD *
+                                       std::pow(LAST_THRESHOLD / FIRST_THRESHOLD, k / (THRESHOLDS - 1.)));
+    for (size_t i = 0; i < squared.size(); i++)
+    {
+        double each = 0;
+        for (double per : perThreshold2)
+            each += std::min(squared[i] * per, 1.);
+        sum += weights.empty() ? each : each * weights[i];
+    }
+    return sum;
+}
+
+struct Candidate
+{
+    RelativePose pose;
+    Errors squared;
+    double sum;
+
+    bool operator<(const Candidate& other) const { return sum < other.sum; }
+};
+
+Candidate candidateOf(
+        const EpipolarProblem& problem, const RelativePose& pose, double scale, const Errors& weights)
+{
+    Candidate candidate;
+    candidate.pose = pose;
+    problem.squaredErrors(pose, candidate.squared);
+    candidate.sum = misfit(candidate.squared, scale, weights);
+    return candidate;
+}
+
+/** The best of the poses that a search leads to, and the other candidates.
+@param unit scale of the search, pixels. */
+PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double unit,
+        Search<EpipolarProblem>& search, int trials, const Errors& weights)
+{
+    PoseFit fit;
+    std::vector<Candidate> candidates;
+    const auto add = [&](const std::vector<RelativePose>& poses) {
+        const size_t count = candidates.size();
+        candidates.resize(count + poses.size());
+        inParallel(poses.size(),
+                [&](size_t i) { candidates[count + i] = candidateOf(problem, poses[i], unit, weights); });
+        std::stable_sort(candidates.begin(), candidates.end());
+    };
+    add(search.upTo(trials));
+    if (candidates.empty())
+        return fit;
+    for (int round = 0; round < ROUNDS && search.samples() >= MANY_TRIALS; round++)
+    {
+        // Few of the samples were right. Of what agrees with the best pose so far, many are.
+        std::vector<int> agree;
+        for (int i = 0; i < problem.size(); i++)
+            if (candidates[0].squared[i] < square(LAST_THRESHOLD * unit))
+                agree.push_back(i);
+        const Loss wide{1.2 * unit, 50};  // up to eight and a half scales
+        const double before = candidates[0].sum;
+        add(Search<EpipolarProblem>(problem, wide, wide, FEWEST, MISSED, agree).upTo(FEWEST));
+        if (candidates[0].sum > BETTER * before)
+            break;
+    }
+    std::vector<RelativePose> narrow;
+    for (size_t i = 0; i < std::min<size_t>(candidates.size(), 3); i++)
+        narrow.push_back(candidates[i].pose);
+    inParallel(narrow.size(), [&](size_t i) { polish(problem, Loss{unit}, ROUGHLY, narrow[i]); });
+    add(narrow);
+    fit.model = candidates[0].pose;
+    fit.squared.swap(candidates[0].squared);
+    for (size_t i = 1; i < candidates.size(); i++)
+        fit.others.push_back(candidates[i].pose);
+    std::vector<double> limits;
+    for (double scales : {1.5, 3., 6., 12.})
+        limits.push_back(scales * unit);
+    const Matx33d essential = essentialOf(fit.model);
+    const Errors wrong = errorsOfWrongMatches(
+            verdict, [&](int i, int j) { return problem.squaredError(fit.model, essential, i, j); });
+    fit.logFalseAlarms = verdict.logFalseAlarms(
+            fit.squared, wrong, Verdict::FROM_LINE, problem.sampleSize(), limits, &fit.limit);
+    fit.chance = verdict.chance(Verdict::FROM_LINE, fit.limit, wrong);
+    return fit;
+}
+
+//! The best pose by a search under that scale, or under wider ones until matches agree by more than chance.
+PoseFit searchPose(
+        const EpipolarProblem& problem, const Verdict& verdict, double scale, const Errors& weights)
+{
+    PoseFit best;
+    int samples = 0;
+    const auto isCertain = [&] { return best.logFalseAlarms < Verdict::CERTAIN; };
+    const auto tryBy = [&](double unit, int fewTrials, int mostTrials) {
+        Search<EpipolarProblem> search(problem, Loss{unit}, Loss{2 * unit}, FEWEST, MISSED);
+        for (int trials : {fewTrials, mostTrials})
+        {
+            PoseFit fit = fitBy(problem, verdict, unit, search, trials, weights);
+            fit.scale = scale > 0 ? scale : scaleWithin(fit.squared, fit.limit, problem.parameters());
+            if (best.squared.empty() || fit.logFalseAlarms < best.logFalseAlarms)
+                best = fit;
+            // Where they err by more than refined ones, a wider scale finds more of them in less time.
+            if (!search.wantsMore() || trials == mostTrials || (isCertain() && fit.scale > MOST_OF_REFINED))
+                break;
+        }
+        samples += search.samples();
+    };
+    if (scale > 0)
+        tryBy(scale, MOST_TRIALS, MOST_TRIALS);
+    else
+    {
+        tryBy(REFINED, FEW_TRIALS, MOST_TRIALS);
+        bool isWide = isCertain() && best.scale > MOST_OF_REFINED;
+        for (double unit = WIDER * REFINED; (isWide || !isCertain()) && unit <= problem.mostScale();
+                unit *= WIDER)
+        {
+            tryBy(unit, FEW_TRIALS, FEW_TRIALS);
+            isWide = false;
+        }
+    }
+    const auto agreeing = [](const PoseFit& fit) {
+        const Verdict::Marks near = within(fit.limit, fit.squared);
+        return std::count(near.begin(), near.end(), true);
+    };
+    if (scale == 0 && problem.size() < FEW)
+    {
+        // A pose may be fitted to some of few matches so well that the others seem wrong.
+        const PoseFit narrow = best;
+        best = PoseFit();
+        tryBy(WIDER * REFINED, FEW_TRIALS, FEW_TRIALS);
+        if (!isCertain() || agreeing(best) < agreeing(narrow))
+            best = narrow;
+    }
+    best.samples = samples;
+    return best;
+}
+
+/** Polishes what may explain the matches as well: the other poses of a plane, t the other way, and the candidates that are apart from
+the pose and from each other. */
+void addOthers(const EpipolarProblem& problem, PoseFit& fit)
+{
+    const size_t most = 6;
+    std::vector<RelativePose> all = problem.rivals(fit.model, fit.scale);
+    const size_t planar = all.size();
+    all.push_back({fit.model.R, -fit.model.t});
+    all.insert(all.end(), fit.others.begin(), fit.others.end());
+    fit.others.clear();
+    for (size_t k = 0; k < all.size(); k++)
+    {
+        const auto isApart = [&](const RelativePose& other) { return problem.areApart(all[k], other); };
+        if (fit.others.size() < most && isApart(fit.model) &&
+                std::all_of(fit.others.begin(), fit.others.end(), isApart))
+            fit.others.push_back(all[k]);
+        if (k < planar)
+            fit.planar = fit.others.size();
+    }
+    inParallel(
+            fit.others.size(), [&](size_t i) { polish(problem, Loss{fit.scale}, ROUGHLY, fit.others[i]); });
+}
+
+//! The scale that the errors show, if it is wider than that one.
+double widerScale(const EpipolarProblem& problem, const Errors& squared, double scale)
+{
+    for (double wider = scale, shown; wider <= problem.mostScale(); wider *= 2)
+        if (findScale(squared, FARTHEST_OF_CHOICE * wider, problem.parameters(), shown))
+            return std::max(shown, scale);
+    return scale;
+}
+
+//! Polishes the pose by the matches that agree with it for another reason than chance; by all, where few do.
+void polishByAgreeing(const EpipolarProblem& problem, double scale, PoseFit& fit)
+{
+    fit.errorScale = fit.limit < 6 * fit.scale ? fit.scale : fit.limit / 3;
+    if (scale > 0)
+        fit.errorScale = std::max(fit.errorScale, widerScale(problem, fit.squared, fit.scale));
+    Errors parallaxes;
+    for (int i = 0; i < problem.size(); i++)
+        parallaxes.push_back(problem.parallax(fit.model, i, i));
+    fit.used = withinByMoreThanChance(fit.squared, parallaxes, 3 * fit.errorScale);
+    if (std::count(fit.used.begin(), fit.used.end(), true) < FEW)
+    {
+        fit.used.assign(problem.size(), true);
+        if (scale == 0)  // few matches show too narrow a scale
+            fit.scale = fit.errorScale = std::max(fit.errorScale, fit.limit / 3);
+    }
+    polish(problem.subset(fit.used), Loss{fit.scale}, FINELY, fit.model);
+    finish(problem, fit);
+}
+
+}  // namespace
+
+PoseFit fitPose(const EpipolarProblem& problem, const Verdict& verdict, double scale, const Errors& weights)
+{
+    PoseFit best = searchPose(problem, verdict, scale, weights);
+    if (best.squared.empty())
+        return best;
+    if (scale == 0)
+        best.scale = widerScale(problem, best.squared, best.scale);
+    polish(problem, Loss{best.scale}, ROUGHLY, best.model);
+    finish(problem, best);
+    addOthers(problem, best);
+    double least = misfit(best.squared, best.scale, weights);
+    for (RelativePose& other : best.others)  // next to a pose that was polished may be a better one
+    {
+        const Candidate candidate = candidateOf(problem, other, best.scale, weights);
+        if (candidate.sum >= least)
+            continue;
+        least = candidate.sum;
+        other = best.model;
+        best.model = candidate.pose;
+    }
+    finish(problem, best);
+    polishByAgreeing(problem, scale, best);
+    return best;
+}
+
+}  // namespace cv::iib

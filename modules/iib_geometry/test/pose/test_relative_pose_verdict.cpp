@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+
+#include "two_cameras.hpp"
+#include "verdict/pose_verdict.hpp"
+
+// Which poses are accepted, and how far off they are said to be.
+namespace opencv_test {
+namespace {
+using namespace cv::iib;
+
+struct Found
+{
+    bool found;
+    RelativePose pose;
+    Matx<double, 5, 5> covariance;
+    String reason;
+
+    explicit Found(const Views& views)
+    {
+        found = findRelativePose(views.points1, views.points2, CAMERA, CAMERA, pose.R, pose.t, noArray(), 0,
+                covariance, &reason);
+    }
+
+    //! Whether the true direction of t is inside the region of 95 %.
+    bool hasDirection(const RelativePose& truth) const
+    {
+        const Vec2d off(stepBetween(pose, truth).val + 3);
+        return off.dot(covariance.get_minor<2, 2>(3, 3).inv() * off) < 5.99;
+    }
+};
+
+RelativePose along(RNG& random, const Vec3d& t) { return {randomPose(random, .1).R, normalize(t)}; }
+
+void append(Views& views, const Point2d& first, const Point2d& second)
+{
+    views.points1.push_back(Mat(Matx12d(first.x, first.y)));
+    views.points2.push_back(Mat(Matx12d(second.x, second.y)));
+}
+
+TEST(RelativePose, captions_among_random_matches_are_refused)
+{
+    RNG random(61);
+    for (int captions : {1, 2, 3})
+        for (int trial = 0; trial < 10; trial++)
+        {
+            Views views(random, randomPose(random, .2), 240, 240, 0);
+            for (int caption = 0; caption < captions; caption++)
+            {
+                const Point2d corner(random.uniform(20., 400.), random.uniform(20., 420.)),
+                        shift(random.uniform(-15., 15.), random.uniform(-15., 15.));
+                for (int i = 0; i < (captions == 1 ? 60 : 30); i++)
+                {
+                    const Point2d p = corner + Point2d(random.uniform(0., 200.), random.uniform(0., 30.));
+                    append(views, p, p + shift + Point2d(random.gaussian(.1), random.gaussian(.1)));
+                }
+            }
+            const Found result(views);
+            EXPECT_FALSE(result.found) << captions << ' ' << trial;
+            EXPECT_FALSE(result.reason.empty());
+        }
+}
+
+TEST(RelativePose, more_right_matches_are_no_reason_against_it)
+{
+    const struct
+    {
+        int count;
+        double beside;  // pixels
+    } scenes[] = {{0, 0}, {40, 0}, {200, 10}};
+    for (const auto& scene : scenes)
+    {
+        RNG random(62);
+        for (int trial = 0; trial < 15; trial++)
+        {
+            const RelativePose truth = randomPose(random, .2);
+            Views views(random, truth, 12, 0, 0);
+            const Vec3d centre(random.uniform(100., 540.), random.uniform(100., 380.), 1);
+            const double depth = random.uniform(6., 12.);
+            for (int i = 0; i < scene.count; i++)
+            {
+                const Vec3d pixel =
+                        centre + scene.beside * Vec3d(random.uniform(-1., 1.), random.uniform(-1., 1.), 0);
+                Point2d first, second;
+                see(random, truth, depth * (CAMERA.inv() * pixel), 0, &first.x, &second.x);
+                append(views, first, second);
+            }
+            const Found result(views);
+            EXPECT_TRUE(result.found) << scene.count << ' ' << scene.beside << ": " << result.reason;
+        }
+    }
+}
+
+TEST(RelativePose, eight_right_matches_are_enough_and_eight_wrong_ones_are_not)
+{
+    RNG random(63);
+    int right = 0, wrong = 0;
+    for (int trial = 0; trial < 40; trial++)
+    {
+        right += Found(Views(random, randomPose(random, .2), 8, 0, .1)).found;
+        wrong += Found(Views(random, randomPose(random, .2), 8, 8, 0)).found;
+    }
+    EXPECT_GE(right, 28);
+    EXPECT_EQ(0, wrong);
+}
+
+TEST(RelativePose, of_swapped_images_is_the_inverse)
+{
+    RNG random(64);
+    for (int trial = 0; trial < 10; trial++)
+    {
+        Views views(random, randomPose(random, .2), 60, 30, .5);
+        const Found one(views);
+        std::swap(views.points1, views.points2);
+        const Found other(views);
+        ASSERT_EQ(one.found, other.found);
+        EXPECT_EQ(one.reason, other.reason);
+        if (!one.found)
+            continue;
+        EXPECT_LT(cv::norm(stepBetween(inverse(one.pose), other.pose)), 1e-9);
+        const Matx<double, 5, 5> back = stepOfInverse(one.pose);
+        EXPECT_LT(cv::norm(back * one.covariance * back.t(), other.covariance),
+                1e-6 * cv::norm(other.covariance));
+    }
+}
+
+TEST(RelativePose, a_step_from_it_is_a_step_from_its_inverse)
+{
+    RNG random(65);
+    const RelativePose pose = randomPose(random, 1);
+    const Matx<double, 5, 5> all = stepOfInverse(pose);
+    for (int k = 0; k < 5; k++)
+    {
+        Vec<double, 5> step;
+        step[k] = 1e-3;
+        const Vec<double, 5> there = stepBetween(inverse(pose), inverse(moved(pose, step)));
+        EXPECT_LT(cv::norm(there - all * step), 1e-5) << k;
+    }
+}
+
+// Wrong matches behind a camera, or of a parallax that no right one has, would make the errors too small.
+TEST(RelativePose, errors_of_small_parallax_are_realistic_among_wrong_matches)
+{
+    const struct
+    {
+        Vec3d t;
+        int trials, count, wrong, inside;
+    } scenes[] = {{Vec3d(.01, .02, -1), 50, 200, 100, 46}, {Vec3d(.01, .02, 1), 50, 200, 100, 46},
+            {Vec3d(1, .2, .1), 50, 200, 100, 46}, {Vec3d(1, .5, .5), 20, 1000, 850, 17}};
+    for (const auto& scene : scenes)
+    {
+        RNG random(66);
+        int inside = 0;
+        for (int trial = 0; trial < scene.trials; trial++)
+        {
+            const RelativePose truth = along(random, scene.t);
+            const Found result(Views(random, truth, scene.count, scene.wrong, .5, .3));
+            inside += result.found && result.hasDirection(truth);
+        }
+        EXPECT_GE(inside, scene.inside) << scene.t;
+    }
+}
+
+TEST(RelativePose, a_match_of_odd_parallax_is_no_more_than_chance)
+{
+    std::vector<double> squared(100, .01), parallaxes(100, 10);
+    for (int i = 50; i < 100; i++)  // fifty wrong ones, of which one is near
+    {
+        squared[i] = i == 50 ? .01 : 1e4;
+        parallaxes[i] = 200;
+    }
+    const Verdict::Marks marks = withinByMoreThanChance(squared, parallaxes, 1);
+    EXPECT_EQ(50, std::count(marks.begin(), marks.end(), true));
+    EXPECT_FALSE(marks[50]);
+    parallaxes.assign(100, 10);
+    EXPECT_TRUE(withinByMoreThanChance(squared, parallaxes, 1)[50]);
+}
+
+// Of 350 matches 49 are right, and not one sample in ten thousand is of these alone.
+TEST(RelativePose, is_found_by_few_right_matches_within_half_a_pixel)
+{
+    RNG random(69);
+    int right = 0;
+    for (int trial = 0; trial < 20; trial++)
+    {
+        const RelativePose truth = randomPose(random, .2);
+        const Found result(Views(random, truth, 350, 301, .25));
+        right += result.found && cv::norm(stepBetween(result.pose, truth)) < .05;
+    }
+    EXPECT_GE(right, 14);
+}
+
+TEST(RelativePose, takes_covariances_of_matches)
+{
+    RNG random(70);
+    const RelativePose truth = randomPose(random, .2);
+    const Views views(random, truth, 100, 30, .2);
+    Mat R, t;
+    const Mat covariances(100, 3, CV_32F, Scalar(.04));
+    ASSERT_TRUE(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, noArray(),
+            nullptr, covariances));
+    EXPECT_LT(cv::norm(stepBetween({R, Vec3d(t)}, truth)), .03);
+    EXPECT_THROW(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, noArray(),
+                         nullptr, covariances.rowRange(1, 100)),
+            cv::Exception);
+    EXPECT_THROW(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, noArray(),
+                         nullptr, Mat(100, 3, CV_32S, Scalar(1))),
+            cv::Exception);
+}
+
+}  // namespace
+}  // namespace opencv_test
