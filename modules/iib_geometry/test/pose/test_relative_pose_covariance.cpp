@@ -65,7 +65,7 @@ TEST(RelativePose, covariance_foretells_the_errors_of_few_matches)
             const Coverage coverage(random, count == 10 ? 400 : 100,
                     [&](const RelativePose& truth) { return Views(random, truth, count, 0, noise); });
             EXPECT_GE(coverage.found(), count == 10 ? .5 : .95);
-            EXPECT_GE(coverage.within(MEDIAN), .5);
+            EXPECT_GE(coverage.within(MEDIAN), count == 25 ? .9 : .8);  // .84 and .77, if not all are used
             EXPECT_GE(coverage.within(OF_95), noise < 1 ? .93 : .9);
             EXPECT_GE(coverage.within(OF_99), noise < 1 ? .94 : .92);
         }
