@@ -90,7 +90,7 @@ std::string numbers(const ViewPair& pair, const Points& points)
 std::vector<Detector> describedByTwo(Options options)
 {
     if (options.detectors.empty())
-        options.detectors = {"ORB", "AKAZE", "SIFT", "SIFT normalized", "Hessian"};
+        options.detectors = {"SIFT", "SIFT normalized", "Hessian"};
     std::vector<Detector> all = detectors(options);
     for (Detector& detector : all)
         detector.only = {detector.descriptor, UNIVERSAL};

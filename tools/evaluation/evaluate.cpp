@@ -22,7 +22,7 @@ struct Experiment
 };
 
 const Experiment EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
-        {"estimators", estimators}, {"alignment", alignment}, {"matching", matching},
+        {"estimators", estimators}, {"controls", controls}, {"alignment", alignment}, {"matching", matching},
         {"robustness", robustness}, {"comparison", comparison}, {"uncertainty", uncertainty},
         {"views", warpedViews}, {"wxbs", wxbs}};
 

@@ -30,6 +30,9 @@ int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs);
 //! Poses of the views below the roots (common/views.hpp), or of Options::pairs, from plain and refined matches by several estimators;
 //! `<out>/matched_points.csv` holds the matches for others.
 int estimators(const Options& options, const std::vector<ImagePair>& pairs);
+/** Poses by this library and by other detectors and descriptors, all refined and propagated here, for four ratios and with noise; and, where
+views.py wrote depths, in `<out>/neighbours.csv` how many points have the right nearest neighbour. */
+int controls(const Options& options, const std::vector<ImagePair>& pairs);
 //! alignImages on pairs whose light changes, the second image moved by a homography, and on images of different scenes.
 int alignment(const Options& options, const std::vector<ImagePair>& pairs);
 //! HierarchicalMatcher's modes and the paper's thresholds (paper, "Fast Hierarchical vs. Brute-force Matching").

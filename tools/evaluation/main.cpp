@@ -13,7 +13,7 @@ const char ABOUT[] = "The paper's experiments, and more, on image sequences: iib
 
 const char KEYS[] =
         "{out         |<none>|folder of the results; a run that was interrupted goes on there}"
-        "{only        |<none>|fixed_points, detected_points, estimators, alignment, matching, "
+        "{only        |<none>|fixed_points, detected_points, estimators, controls, alignment, matching, "
         "robustness, comparison, uncertainty, views or wxbs; may be repeated}"
         "{pairs       |<none>|a list of pairs of images in DATA, with cameras and poses, for estimators; may "
         "be repeated}"

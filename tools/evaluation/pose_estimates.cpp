@@ -40,9 +40,11 @@ double poseError(const cv::Mat& rotation, const cv::Mat& translation, const View
 
 }  // namespace
 
-std::vector<cv::DMatch> mutualRatioMatches(const Described& reference, const Described& target)
+std::vector<cv::DMatch> mutualMatches(
+        const Described& reference, const Described& target, std::vector<float>& ratios)
 {
     std::vector<cv::DMatch> kept;
+    ratios.clear();
     if (reference.descriptors.empty() || target.descriptors.rows < 2)
         return kept;
     const cv::BFMatcher matcher(reference.norm);
@@ -50,11 +52,30 @@ std::vector<cv::DMatch> mutualRatioMatches(const Described& reference, const Des
     std::vector<cv::DMatch> back;
     matcher.knnMatch(reference.descriptors, target.descriptors, nearest, 2);
     matcher.match(target.descriptors, reference.descriptors, back);
-    const float ratio = reference.norm == cv::NORM_HAMMING ? RATIO_BITS : RATIO_FLOAT;
     for (const std::vector<cv::DMatch>& two : nearest)
-        if (two[0].distance < ratio * two[1].distance && back[two[0].trainIdx].trainIdx == two[0].queryIdx)
+        if (back[two[0].trainIdx].trainIdx == two[0].queryIdx)
+        {
             kept.push_back(two[0]);
+            ratios.push_back(two[1].distance > 0 ? two[0].distance / two[1].distance : 1);
+        }
     return kept;
+}
+
+std::vector<cv::DMatch> underRatio(
+        const std::vector<cv::DMatch>& matches, const std::vector<float>& ratios, float most)
+{
+    std::vector<cv::DMatch> kept;
+    for (size_t i = 0; i < matches.size(); i++)
+        if (ratios[i] < most)
+            kept.push_back(matches[i]);
+    return kept;
+}
+
+std::vector<cv::DMatch> mutualRatioMatches(const Described& reference, const Described& target)
+{
+    std::vector<float> ratios;
+    const std::vector<cv::DMatch> matches = mutualMatches(reference, target, ratios);
+    return underRatio(matches, ratios, reference.norm == cv::NORM_HAMMING ? RATIO_BITS : RATIO_FLOAT);
 }
 
 Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target)

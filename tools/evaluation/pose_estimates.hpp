@@ -21,6 +21,11 @@ struct Outcome
     int inliers;
 };
 
+//! Mutual nearest neighbours, and their distances over those of the second neighbours.
+std::vector<cv::DMatch> mutualMatches(
+        const Described& reference, const Described& target, std::vector<float>& ratios);
+std::vector<cv::DMatch> underRatio(
+        const std::vector<cv::DMatch>& matches, const std::vector<float>& ratios, float most);
 //! Mutual nearest neighbours under a ratio of .9 of bits, .8 of numbers.
 std::vector<cv::DMatch> mutualRatioMatches(const Described& reference, const Described& target);
 Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target);

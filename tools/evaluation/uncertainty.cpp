@@ -102,7 +102,7 @@ void judgePose(const Stereo& stereo, int points, const ErrorRows& rows)
     cv::Mat points1, points2, covariances, similarities, R, t, covariance;
     cv::iib::propagateMatches(stereo.first, m.first, stereo.second, m.second, m.matches, points1, points2,
             covariances, similarities);
-    rows.add("propagated points, across epipolar lines",
+    rows.add("propagated points across epipolar lines",
             acrossLines(fundamentalOf(pair), points1, points2, covariances, similarities), 1);
     std::vector<JudgedError> rotation, direction;
     if (cv::iib::findRelativePose(points1, points2, pair.referenceCamera, pair.targetCamera, R, t,

@@ -6,6 +6,8 @@ import matplotlib
 import numpy as np
 import pandas as pd
 
+import controls
+import summaries
 import tables
 import timings
 
@@ -41,7 +43,7 @@ def speed():
 
     def draw(axis, test, form, sizes, labels):
         for name, label in labels.items():
-            values = [timings.ms(test, *form(name, size)).iloc[0] for size in sizes]
+            values = [timings.ms(test, *form(name, size))['AVX2'] for size in sizes]
             axis.plot(list(sizes.values()), values, marker='o', label=label)
 
     draw(axes[0], 'IIB_Describe_large', lambda name, size: (name, size), {k: 24 * (k / 8) ** 2 for k in (1, 2, 3, 4, 6, 8)}, {'default': 'IIB', 'ORB': 'ORB'})
@@ -60,19 +62,8 @@ def speed():
 
 
 def poses():
-    """What others do for poses beside what this project does, in other light."""
-    found, names = tables.estimates(), list(tables.METHODS.values())
-    figure, axis = plt.subplots(figsize=(WIDTH, 3.2), layout='constrained')
-    for k, (way, label, colour) in enumerate(zip(tables.WAYS, ("matches as they are, OpenCV's MAGSAC", 'matches as they are, PoseLib', 'propagateMatches, findRelativePose'),
-                                                 ('#cbd5e1', GREY, RED))):
-        rows = [found[(method, 'other light') + way] for method in tables.METHODS]
-        values, ends = spread(rows)
-        axis.barh(np.arange(len(names)) + .28 * k, values, .26, xerr=ends, label=label, color=colour, error_kw=ENDS)
-    axis.set(xlim=(0, 1), yticks=np.arange(len(names)) + .28, yticklabels=names, xlabel=SCORE)
-    axis.grid(False)
-    axis.invert_yaxis()
-    axis.legend(loc='upper right', frameon=False, fontsize='small')
-    return svg(figure)
+    """Every method at its best ratio, in other light."""
+    return scores([('recommended chain' if method == controls.CHAIN else controls.name(method), controls.found()['other light', *method]) for method in controls.methods()])
 
 
 def spread(rows, value='at_5'):
@@ -122,7 +113,7 @@ def cost():
 def uncertainty():
     """For each quantity, a curve a kind of data: confidence level, and share of the errors within the limit."""
     rows = pd.read_csv(tables.RESULTS / 'uncertainty.csv').query('errors > 0')
-    levels = list(rows.columns[5:-2])
+    levels = list(summaries.LEVELS)
     figure, axis = plt.subplots(figsize=(WIDTH, 5), layout='constrained')
     for quantity, each in rows.groupby('quantity'):
         shares = each[levels].mul(each['errors'], axis=0).sum() / each['errors'].sum()

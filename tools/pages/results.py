@@ -65,7 +65,7 @@ def estimates(tables):
     """Areas under the curve of the error of poses up to 5 degrees by place: a line for plain, refined and propagated matches of
     each method, with a column for each estimator."""
     names = sorted({row["estimator"] for row in tables["estimators"]}, key=lambda name: (name != "findRelativePose", name))  # ours first
-    found = {place: [] for place in ("other light", "same light", "chosen on")}
+    found = {place: [] for place in ("other light", "same light")}
     for (place, detector, descriptor, points), rows in group(tables["estimators"], "place", "detector", "descriptor", "points").items():
         method = descriptors.POSES.get((detector, descriptor), "%s, %s" % (detector, descriptor))
         found.setdefault(place, []).append((method, points, by(rows, "estimator")))

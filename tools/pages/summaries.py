@@ -56,14 +56,14 @@ def curve_places(row):
 
 
 def light_place(row):
-    """Poses of views in one light, or in two, or of a list: those that nothing was chosen on are judged by themselves."""
+    """Poses of views in one light, or in two, or of a list, that nothing was chosen on."""
     if row['set'] == 'strecha':
         return ['same light']
     if row['set'].startswith('list '):  # of pairs, by others
         return [row['set']]
     seed = re.fullmatch('[a-z]+_([0-9]+)', row['set'])
     chosen = row['set'] in CHOSEN_ON or seed and seed[1] in CHOSEN_SEEDS
-    return [] if row['set'] in TRAINED_ON else ['chosen on' if chosen else 'other light']
+    return [] if chosen or row['set'] in TRAINED_ON else ['other light']
 
 
 def scene(row):
@@ -231,8 +231,8 @@ def summarize_gains(source, target):
         for pair in sorted(own.keys() & ours):
             scenes[pair[:2]].append((own[pair], ours[pair]))
         pairs = [pair for scene in scenes.values() for pair in scene]
-        lines.append([place, detector, len(pairs)] + ['%.4f' % v for v in (gain(pairs), *interval(scenes.values(), gain))])
-    write(target, ['place', 'detector', 'pairs', 'gain', 'low', 'high'], lines)
+        lines.append([place, detector, len(pairs), len(scenes)] + ['%.4f' % v for v in (gain(pairs), *interval(scenes.values(), gain))])
+    write(target, ['place', 'detector', 'pairs', 'scenes', 'gain', 'low', 'high'], lines)
 
 
 def summarize_differences(source, target):
@@ -357,10 +357,11 @@ def main():
         print(__doc__.split('\n\n')[0] + '; PAIRS must be one', file=sys.stderr)
         return 2
     pairs, out = map(pathlib.Path, sys.argv[1:3])
-
+    import controls  # which imports this
     run = [sys.argv[3], today(), sys.argv[4]] if sys.argv[3:] else ['not recorded']
     plans = {name: (name, lambda source, target: summarize(source, target, *PLANS[target.name], *run[:target.name in KEPT])) for name in PLANS}
-    made = {name: how for name, how in {**plans, **OTHERS}.items() if (pairs / how[0]).is_file()}
+    of_controls = {'controls.csv': ('controls.csv', controls.summarize), 'neighbours.csv': ('neighbours.csv', controls.summarize_neighbours)}
+    made = {name: how for name, how in {**plans, **OTHERS, **of_controls}.items() if (pairs / how[0]).is_file()}
     before = {name: text_of(out / name) for name in made}
     for name, (source, make) in made.items():
         make(pairs / source, out / name)

@@ -10,6 +10,8 @@ import json
 import pathlib
 import re
 
+import controls
+import questions
 import summaries
 from summaries import table
 from timings import RESULTS, chains, describing, matching, rows, same_points, speed_figures, step_by_step
@@ -74,13 +76,13 @@ def other_run(*rows):
 
 
 def learned_figures():
-    """Scores of ALIKED with LightGlue and of the chain by number of points, milliseconds, and the ratio of ALIKED's 1000 to the chain's 4000."""
+    """Scores of ALIKED with LightGlue and of the chain by number of points, and the ratio of the times of ALIKED's 1000 and the chain's 4000."""
     names, figures, found = {('ALIKED-n16', 'LightGlue'): 'aliked', ('recommended chain', 'mutual, a ratio'): 'chain'}, {}, {}
     for (detector, points, matches), ways in poses_by_time().items():
         if (detector, matches) in names:
             name = '%s_%d' % (names[detector, matches], points)
             found[name] = ways['refined']
-            figures.update({name + '_' + way: '%.2f' % float(row['at_5']) for way, row in ways.items()}, **{name + '_ms': '%.0f' % float(ways['refined']['milliseconds'])})
+            figures.update({name + '_' + way: '%.2f' % float(row['at_5']) for way, row in ways.items()})
     few, many = found['aliked_1000'], found['chain_4000']
     return {**figures, 'times': '%.0f' % (float(few['milliseconds']) / float(many['milliseconds'])), 'pairs': few['pairs'], 'runs': other_run(few, many)}
 
@@ -144,19 +146,29 @@ def localization_setups():
     return table(['map', 'set-up'] + SETUP_HEAD, setups(('map', 'setup')))
 
 
+SEEN = 'Herz-Jesus-P8', 'entry-P10', 'castle-P30'  # with which rules of matching were settled
+
+
 def located_photographs():
-    """How many images of Strecha's scenes are near their places: method, as they are, relit, both."""
-    found, lines = [row for row in json.loads((ROOT / 'doc/localization/results.json').read_text())['rows'] if row['light'] in ('as they are', 'relit')], []
-    for method in dict.fromkeys(row['method'] for row in found):
-        of = [row for row in found if row['method'] == method]
-        both = [[sum(row[column] for row in of if row['light'] == light) for column in ('within_5', 'images')] for light in ('as they are', 'relit')]
-        lines.append([method, *('%d of %d' % tuple(one) for one in both), '%d of %d' % tuple(map(sum, zip(*both)))])
-    return lines
+    """How many images of Strecha's scenes are near their places, by method: those as they are and those relit, within 5 cm and within 25; then the
+    same within 5 cm of each scene that nothing was chosen on."""
+    found = [row for row in json.loads((ROOT / 'doc/localization/results.json').read_text())['rows'] if row['light'] in ('as they are', 'relit')]
+    unseen = [place for place in dict.fromkeys(row['place'] for row in found) if place not in SEEN]
+
+    def near(method, limit, places):
+        for light in ('as they are', 'relit'):
+            of = [row for row in found if (row['method'], row['light']) == (method, light) and (not places or row['place'] in places)]
+            yield '%d of %d' % tuple(sum(row[column] for row in of) for column in (limit, 'images'))
+    lines = [[method, *near(method, 'within_5', ()), *near(method, 'within_25', ()), *itertools.chain(*(near(method, 'within_5', [place]) for place in unseen))]
+             for method in dict.fromkeys(row['method'] for row in found)]
+    return unseen, lines
 
 
 def localization_photographs():
     """The same as a table."""
-    return table(['within 5 cm and 0.5°', 'as they are', 'relit by computation', 'both'], located_photographs())
+    unseen, lines = located_photographs()
+    heads = ['within 5 cm and 0.5°', 'within 25 cm', *('%s, 5 cm' % place for place in unseen)]
+    return table(['', *(head + light for head in heads for light in ('', ', relit'))], lines)
 
 
 def localization_lights(file):
@@ -211,24 +223,12 @@ def estimates():
 
 
 CHAIN = 'Hessian', 'IIB UNIVERSAL'
-METHODS = {('ORB', 'ORB'): 'ORB', ('AKAZE', 'AKAZE'): 'AKAZE', ('SIFT', 'SIFT'): 'SIFT', ('SIFT normalized', 'SIFT'): 'SIFT normalized',
-           CHAIN: 'recommended chain'}
 WAYS = ('plain', 'MAGSAC'), ('plain', 'PoseLib'), ('propagated', 'findRelativePose')  # OpenCV's, the best of others, and this project's
 
 
 def score(row):
     """The area up to 5 degrees with its interval."""
     return '%.2f (%.2f to %.2f)' % tuple(float(row[name]) for name in ('at_5', 'low', 'high'))
-
-
-def poses():
-    """What others do beside what this project does for poses, for the methods on the first page."""
-    found, lines = estimates(), []
-    for method, label in METHODS.items():
-        cells = ['%.2f' % float(found[(method, place) + way]['at_5']) for place in ('same light', 'other light') for way in WAYS]
-        lines.append(['**%s**' % label if method == CHAIN else label, *cells[:-1], score(found[(method, 'other light') + WAYS[-1]])])
-    head = ['%s: %s' % (place, how) for place in ('same light', 'other light') for how in ('OpenCV', 'PoseLib', 'refined here')]
-    return table(['points and descriptor', *head], lines)
 
 
 def pose_methods():
@@ -254,8 +254,32 @@ def drop_in():
         rivals = max(((float(row['correct']), descriptor) for (place, detector, descriptor), row in found.items()
                       if (place, detector) == ('natural', name) and re.match('[BT]EBLID', descriptor)), default=None)
         lines.append([name, correct(name, name), '%s: %.0f' % rivals[::-1] if rivals else '–', correct(name, 'IIB'), gains['natural', name], gains['light', name]])
-    return table(['points of (%s pairs)' % found['natural', 'ORB', 'IIB']['pairs'], 'its own descriptor', 'best of BEBLID and TEBLID', '**IIB**', 'times its own (95 % interval)',
-                  'times its own, on the %s pairs that are of no webcam' % found['light', 'ORB', 'IIB']['pairs']], lines)
+    scenes = {row['place']: row['scenes'] for row in rows('gains.csv')}
+    return table(['points of (%s pairs of %s scenes)' % (found['natural', 'ORB', 'IIB']['pairs'], scenes['natural']), 'its own descriptor', 'best of BEBLID and TEBLID', '**IIB**', 'times its own (95 % interval)',
+                  'times its own, on the %s pairs of %s scenes that are of no webcam' % (found['light', 'ORB', 'IIB']['pairs'], scenes['light'])], lines)
+
+
+SIZES = {32: ('IIB SMALL', 'IIB TINY', 'ORB', 'BEBLID-256', 'TEBLID-256', 'BRIEF-256', 'LATCH-256'),
+         64: ('IIB COMPACT', 'IIB BALANCED', 'BEBLID-512', 'TEBLID-512', 'LATCH-512', 'BRIEF-512')}
+
+
+def equal_sizes():
+    """Descriptors of equal size: at ORB's points, as detected in both images, and at the same points in both; pairs of sets that nothing was trained on."""
+    detected, fixed = (summaries.by(rows(name), key, place='light', **more) for name, key, more in (
+        ('detected_points.csv', 'descriptor', {'detector': 'ORB'}), ('fixed_points.csv', 'configuration', {})))
+    lines = []
+    for size, names in SIZES.items():
+        for name in sorted(names, key=lambda name: -float(fixed[name]['recall'])):
+            at_orb = detected.get(name)
+            lines.append([str(size), name, '%.0f' % float(at_orb['correct']) if at_orb else '–', precision_recall(fixed[name])])
+    return table(['bytes', 'descriptor', "right matches of ORB's points, %s pairs" % detected['ORB']['pairs'], 'precision / recall at fixed points, %s pairs' % fixed['ORB']['pairs']], lines)
+
+
+def rotation_figures():
+    """Recall of upright and oriented codes of rotated images."""
+    turned = summaries.by(rows('robustness.csv'), 'configuration', 'target', kind='turn')
+    return {'%s_%s' % (name, angle): '%.2f' % float(turned[configuration, angle]['recall']) for name, configuration, angle in (
+        ('upright', 'IIB', '15'), ('upright', 'IIB', '30'), ('oriented', 'IIB oriented', '15'), ('orb', 'ORB oriented', '15'))}
 
 
 POSE_KEYS = 'place', 'detector', 'descriptor', 'points', 'estimator'
@@ -264,22 +288,17 @@ POSE_KEYS = 'place', 'detector', 'descriptor', 'points', 'estimator'
 def compared(row, sign=1):
     """How much less than the chain's a way to a pose has, or with -1 how much more, on the same pairs; with its interval."""
     less = summaries.by(rows('differences.csv'), *POSE_KEYS)[tuple(row[key] for key in POSE_KEYS)]
-    return '%.2f (%.2f to %.2f)' % tuple(round(sign * float(less[key]), 2) + 0. for key in ('less', *('low', 'high')[::sign]))
+    return '%.3f (%.3f to %.3f)' % tuple(round(sign * float(less[key]), 3) + 0. for key in ('less', *('low', 'high')[::sign]))
 
 
 def pose_figures():
-    """Scores of the chain, and the best that any estimator makes of others' points; what they have less on the same pairs."""
+    """Scores of other estimators' run: of the chain in other light and in one, and of others in one light."""
     every = estimates()
-
-    def best(place, **where):
-        return max((row for row in rows('estimators.csv') if row['place'] == place and all(row[key] == value for key, value in where.items())),
-                   key=lambda row: float(row['at_5']))
     ours, theirs, refined = (every[CHAIN, 'other light', *way] for way in (WAYS[-1], ('propagated', 'PoseLib'), ('refined', WAYS[-1][1])))
-    same, sift, orb = every[CHAIN, 'same light', *WAYS[-1]], best('other light', descriptor='SIFT'), best('other light', descriptor='ORB')
-    scores = {'chain': ours, 'refined': refined, 'poselib': theirs, 'chain_same': same, 'sift_same': every[('SIFT', 'SIFT'), 'same light', *WAYS[1]],
-              'best_same': best('same light')}
-    return {**{name: '%.2f' % float(row['at_5']) for name, row in scores.items()}, 'chain_ends': score(ours), 'sift_best': score(sift), 'sift_less': compared(sift),
-            'orb_best': score(orb), 'poselib_more': compared(theirs, -1), 'pairs': ours['pairs'], 'pairs_same': same['pairs']}
+    same = every[CHAIN, 'same light', *WAYS[-1]]
+    scores = {'chain': ours, 'refined': refined, 'chain_same': same, 'sift_same': every[('SIFT', 'SIFT'), 'same light', *WAYS[1]],
+              'best_same': max((row for key, row in every.items() if key[1] == 'same light'), key=lambda row: float(row['at_5']))}
+    return {**{name: '%.2f' % float(row['at_5']) for name, row in scores.items()}, 'poselib_more': compared(theirs, -1), 'pairs': ours['pairs']}
 
 
 def photograph_figures():
@@ -291,15 +310,18 @@ def photograph_figures():
     def joined(row):
         largest, *others = (int(n) for n in (row['registered'].split()[0] + ' ' + row['others']).split())
         return '%d in %d parts, %d in the largest' % (largest + sum(others), 1 + len(others), largest) if others else '%d in one' % largest
-    near = {line[0]: line[1:] for line in located_photographs()}
-    figures = {'images': statue['chain']['registered'].split()[-1], 'date': run['date'], **{name.lower(): joined(statue[name]) for name in ('chain', 'SIFT', 'normalized')}}
+    near = {line[0]: line[1:] for line in located_photographs()[1]}
+    close, shared = next(row['close'] for row in found if row['method'] == 'chain and SIFT').split(' of ')
+    figures = {'images': statue['chain']['registered'].split()[-1], 'date': run['date'], 'disagree': '%d of %s' % (int(shared) - int(close), shared)}
     for name, method in (('chain', 'recommended chain'), ('sift', 'SIFT, normalized image')):
-        figures.update({name + '_located': near[method][0], name + '_relit': near[method][1]})
+        figures.update(zip((name + '_located', name + '_relit', name + '_near', name + '_near_relit'), near[method]))  # within 5 cm, and within 25
     points = {(row['scene'], row['method']): int(row['points']) for row in found if row['points']}
     for method in ('chain', 'SIFT', 'normalized'):
         kept = [round(100 * count / points[scene[:-len(' relit')], name]) for (scene, name), count in points.items() if name == method and scene.endswith(' relit')]
         errors = [row['reprojection'] for row in found if row['method'] == method and row['scene'] != 'liberty']
-        figures.update({method.lower() + '_kept': '%d to %d' % (min(kept), max(kept)), method.lower() + '_errors': '%s to %s' % (min(errors), max(errors))})
+        name = method.lower()
+        figures.update({name: joined(statue[method]), name + '_error': statue[method]['reprojection'], name + '_kept': '%d to %d' % (min(kept), max(kept)),
+                        name + '_errors': '%s to %s' % (min(errors), max(errors))})
     return figures
 
 
@@ -415,11 +437,20 @@ def first_patch():
     return table(('descriptor', 'bytes', 'precision', 'recall', 'interval of recall', 'ms for 1000 points'), lines)
 
 
+def run_figures():
+    """Which code made a file, and when, by the file's name."""
+    return {row['file'][:-len('.csv')]: '%s on %s (%s)' % (row['commit'].replace(';', ' and '), row['date'], row['machine'])
+            for row in rows('runs.csv') if re.fullmatch(r'\w+\.csv', row['file'])}
+
+
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
-    drop_in, poses, presets, views, views_affine, photographs, photographs_of_many, describing, chains, same_points, matching, step_by_step,
+    drop_in, equal_sizes, presets, views, views_affine, photographs, photographs_of_many, describing, chains, same_points, matching, step_by_step,
     matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time,
     detected_points, uncertainty, night, first_patch)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
-FIGURES = {'learned': learned_figures, 'poses': pose_figures, 'photographs': photograph_figures, 'views': view_figures, 'sure': sure_figures, 'speed': speed_figures}
+ALL.update({'poses': controls.table_of_best, 'pose_all': controls.table, 'pose_kinds': controls.kinds, 'pose_ratios': controls.by_ratio, 'pose_noise': controls.noise,
+            'pose_neighbours': controls.neighbours, 'pose_cause': controls.cause, 'wrong_poses': controls.wrong, **questions.ALL})
+FIGURES = {'learned': learned_figures, 'controls': controls.figures, 'poses': pose_figures, 'photographs': photograph_figures, 'views': view_figures, 'sure': sure_figures,
+           'speed': speed_figures, 'rotation': rotation_figures, 'questions': questions.figures, 'runs': run_figures}

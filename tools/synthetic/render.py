@@ -15,7 +15,7 @@ from collections import namedtuple
 import cv2
 import numpy as np
 
-from scenes import LIGHTS, NOISE, NOISE_BY_DAY, SCENES, extrinsics, intrinsics, walk
+from scenes import LIGHTS, NOISE, NOISE_BY_DAY, SCENES, STILLS, extrinsics, intrinsics, walk
 
 HERE = pathlib.Path(__file__).resolve().parent
 DEPTH_SCALE = 0.004  # metres a step, as in common.inc
@@ -176,8 +176,8 @@ def render_all(tasks, size, jobs, run_task=run):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path, help="output folder; existing pictures are kept")
-    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), metavar="SCENE",
-                        help=f"some of: {', '.join(SCENES)} (all)")
+    parser.add_argument("--scenes", nargs="+", choices=STILLS, default=STILLS, metavar="SCENE",
+                        help=f"some of: {', '.join(STILLS)} (all)")
     parser.add_argument("--frames", type=int, default=0,
                         help="also render walks of this many frames (0: none)")
     parser.add_argument("--size", type=int, nargs=2, default=(640, 480), metavar=("WIDTH", "HEIGHT"))

@@ -34,7 +34,11 @@ SCENES = {
     "terrain": Scene(0.80, (0, 1.7, 0, 0, 2),
                      [(0, 1.7, 0, 0, 2), (0.6, 1.7, 6, 8, 2), (0, 1.7, 12, -5, 2), (-0.8, 1.7, 18, -14, 3)],
                      OUTDOOR + ["snow"]),
+    # Kinds that nothing was trained on, for views.py alone.
+    "yard": Scene(0.82, None, [(-0.6, 1.7, 0, -6, 6), (0.4, 1.75, 2.2, 6, 7), (-0.4, 1.7, 4.4, -10, 8), (0.5, 1.75, 6, 3, 6)], []),
+    "hall": Scene(0.75, None, [(-0.6, 1.65, -2.5, 6, 1), (0.4, 1.7, -0.5, -8, 2), (-0.4, 1.65, 1.5, 9, 1), (0.5, 1.7, 3.5, -6, 2)], []),
 }
+STILLS = [name for name in SCENES if SCENES[name].lights]
 
 
 def walk(waypoints, frames):

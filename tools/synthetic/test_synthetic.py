@@ -109,10 +109,9 @@ class Scenes(unittest.TestCase):
             self.assertGreater(len(np.unique(labels)), 8)
             self.assertGreater(len(np.unique(depth)), 300)
 
-
     def test_a_seed_makes_a_different_but_repeatable_instance(self):
-        for name in ("street", "room", "facade", "terrain"):
-            still = scenes.SCENES[name].still
+        for name in scenes.SCENES.keys() - {"plane"}:
+            still = scenes.SCENES[name].path[1]
             first, second, again = (render.povray(name, render.LABELS, "noon", still, (80, 60), seed=seed)
                                     for seed in (0, 1, 1))
             np.testing.assert_array_equal(second, again, name)
@@ -121,13 +120,16 @@ class Scenes(unittest.TestCase):
     def test_views_are_near_the_walk_in_the_evaluations_layout(self):
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder)
-            tasks = list(views.plan(out, ["room"], [1, 2], (64, 48)))
-            self.assertEqual(len(tasks), 2 * (views.MAP_VIEWS + views.VIEWS * len(views.LIGHTS)))
+            tasks, alone = (list(views.plan(out, ["room"], [1, 2], (64, 48), depth=depth)) for depth in (True, False))
+            self.assertEqual(len(alone), 2 * (views.MAP_VIEWS + views.VIEWS * len(views.LIGHTS)))
+            for image, depth in zip(tasks[::2], tasks[1::2]):  # of each image the depth at its place
+                self.assertEqual((depth.mode, depth.pose.tolist(), depth.seed), (render.DEPTH, image.pose.tolist(), image.seed))
+                self.assertEqual(depth.target, image.target.parents[1] / "depth" / image.target.name)
             walked = scenes.walk(scenes.SCENES["room"].path, 100)
             for task in tasks:
                 self.assertLess(np.abs(walked[:, :3] - task.pose[:3]).max(axis=1).min(), 0.41)
                 self.assertTrue((task.target.parents[1] / "poses.txt").exists())
-            self.assertNotEqual(tasks[-1].pose.tolist(), tasks[len(tasks) // 2 - 1].pose.tolist())
+            self.assertNotEqual(alone[-1].pose.tolist(), alone[len(alone) // 2 - 1].pose.tolist())
 
 
 class Command(unittest.TestCase):

@@ -8,8 +8,8 @@ import pathlib
 import numpy as np
 
 from localization import MAP_LIGHT, SIZE, cameras, tum
-from render import IMAGE, Task, render_all, run_quickly, start, write_text
-from scenes import SCENES, extrinsics, walk
+from render import DEPTH, IMAGE, Task, render_all, run_quickly, start, write_text
+from scenes import SCENES, STILLS, extrinsics, walk
 
 LIGHTS = ["night", "dusk", "winter"]
 MAP_VIEWS, VIEWS = 5, 3  # pictures at noon along the walk, and of each other light beside it
@@ -31,7 +31,7 @@ def nearer(poses, metres, roll):
     return np.column_stack([poses[:, :3] + metres * forward, poses[:, 3:], np.full(len(poses), roll)])
 
 
-def plan(out, scenes, seeds, size, lights=tuple(LIGHTS), moved=()):
+def plan(out, scenes, seeds, size, lights=tuple(LIGHTS), moved=(), depth=False):
     for seed in seeds:
         for scene in scenes:
             views = {"map": (MAP_LIGHT, walk(SCENES[scene].path, MAP_VIEWS))}
@@ -45,24 +45,27 @@ def plan(out, scenes, seeds, size, lights=tuple(LIGHTS), moved=()):
                 write_text(folder / "poses.txt", tum(names, poses))
                 for k, pose in enumerate(poses):
                     yield Task(folder / "images" / f"{names[k]}.png", scene, IMAGE, light, pose, k, [], seed)
+                    if depth:
+                        yield Task(folder / "depth" / f"{names[k]}.png", scene, DEPTH, MAP_LIGHT, pose, k, [], seed)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path, help="output folder; existing pictures are kept")
-    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=list(SCENES), metavar="SCENE",
-                        help=f"some of: {', '.join(SCENES)} (all)")
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=STILLS, metavar="SCENE",
+                        help=f"some of: {', '.join(SCENES)} ({' '.join(STILLS)})")
     parser.add_argument("--seed", nargs="+", type=int, default=[1, 2, 3],
                         help="seeds of the instances; 0 is the scene of the other programs (1 2 3)")
     parser.add_argument("--lights", nargs="*", choices=LIGHTS, default=LIGHTS, metavar="LIGHT",
                         help=f"other than noon: some of {', '.join(LIGHTS)} (all)")
     parser.add_argument("--nearer", nargs=2, type=float, action="append", default=[], metavar=("METRES", "ROLL"),
                         help="adds a folder nearer: the views of map, and the same moved forward and rolled clockwise; may be repeated")
+    parser.add_argument("--depth", action="store_true", help="also renders the depth of each view, in depth/")
     parser.add_argument("--size", type=int, nargs=2, default=SIZE, metavar=("WIDTH", "HEIGHT"))
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
     options = parser.parse_args()
     size = tuple(options.size)
-    render_all(list(plan(options.out, options.scenes, options.seed, size, options.lights, options.nearer)), size, options.jobs, run_quickly)
+    render_all(list(plan(options.out, options.scenes, options.seed, size, options.lights, options.nearer, options.depth)), size, options.jobs, run_quickly)
 
 
 if __name__ == "__main__":

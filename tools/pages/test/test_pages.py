@@ -9,6 +9,7 @@ import unittest.mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import charts  # noqa: E402
+import controls  # noqa: E402
 import localization  # noqa: E402
 import speed  # noqa: E402
 import summaries  # noqa: E402
@@ -73,8 +74,7 @@ class Figures(unittest.TestCase):
             with open(target, newline='') as file:
                 found = {row['place']: row for row in csv.DictReader(file)}
         self.assertEqual({place: (row['pairs'], *(round(float(row[area]), 3) for area in ('at_20', 'at_10', 'at_5', 'at_2'))) for place, row in found.items()},
-                         {'same light': ('2', .875, .75, .5, .5), 'other light': ('1', .9, .8, .6, 0), 'chosen on': ('4', .775, .55, .35, .25),
-                          'list pairs.txt': ('1', .25, 0, 0, 0)})
+                         {'same light': ('2', .875, .75, .5, .5), 'other light': ('1', .9, .8, .6, 0), 'list pairs.txt': ('1', .25, 0, 0, 0)})
         self.assertEqual((found['same light']['low'], found['same light']['high']), ('0', '1'))
 
     def test_ways_to_a_pose_are_measured_one_by_one(self):
@@ -115,6 +115,27 @@ class Figures(unittest.TestCase):
             self.assertEqual([line.split(',')[5:] for line in target.read_text().splitlines()[1:]],
                              [['3', '0', '0', '0'], ['2', '0.25', '0.25', '0.25']])
 
+    def test_a_ratio_is_chosen_on_other_places(self):
+        heads = 'set,sequence,target,detector,descriptor,noise,ratio,error,matches'
+        errors = {('yard_2', '0.8'): 0, ('yard_2', '0.9'): 5, ('room_2', '0.8'): 2.5, ('room_2', '0.9'): 1, ('court_2', '0.8'): 'inf', ('court_2', '0.9'): 2.5}
+        lines = ['%s,night,1,%s,%s,0,%s,%s,9' % (place, *method, ratio, error if method[0] == 'ORB' else 0)
+                 for (place, ratio), error in errors.items() for method in (controls.CHAIN, ('ORB', 'ORB'))]
+        with tempfile.TemporaryDirectory() as folder:
+            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
+            source.write_text(heads)
+            controls.summarize(source, target)  # of no views at all
+            source.write_text('\n'.join([heads, *lines]))
+            controls.summarize(source, target)
+            found = summaries.by(summaries.read(target), 'place', 'detector', ratio='best')
+        # without yard .9 is best, without room and without court .8
+        self.assertEqual({place: (row['pairs'], row['at_5'], row['less'], row['poses'], row['wrong']) for (place, name), row in found.items() if name == 'ORB' and place in (
+            'yard', 'room', 'court', 'other light')},
+            {'yard': ('1', '0', '1', '1', '0'), 'room': ('1', '0.5', '0.5', '1', '0'), 'court': ('1', '0', '1', '0', '0'), 'other light': ('2', '0.25', '0.75', '2', '0')})
+
+    def test_bounds_of_rates(self):
+        self.assertAlmostEqual(controls.upper_bound(0, 446), 1 - .05 ** (1 / 446), delta=1e-9)
+        self.assertAlmostEqual(controls.upper_bound(1, 10), .394, delta=.001)  # of Clopper and Pearson's tables
+
     def test_gains_are_of_the_same_pairs(self):
         rows = [('tilde_webcam' if target else 'iib_demo', target, 'ORB', descriptor, 'light', correct, target)
                 for descriptor, counts in (('ORB', (10, 30)), ('IIB', (20, 30, 99))) for target, correct in enumerate(counts)]
@@ -124,7 +145,7 @@ class Figures(unittest.TestCase):
             with open(source, 'w', newline='') as file:
                 csv.writer(file).writerows([heads, *rows, ('graf', 1, 'ORB', 'ORB', 'viewpoint', 9, 's')])
             summaries.summarize_gains(source, target)
-            self.assertEqual(target.read_text().splitlines()[1:], ['light,ORB,1,2.0000,2.0000,2.0000', 'natural,ORB,2,1.2500,1.0000,2.0000'])
+            self.assertEqual(target.read_text().splitlines()[1:], ['light,ORB,1,1,2.0000,2.0000,2.0000', 'natural,ORB,2,2,1.2500,1.0000,2.0000'])
 
     def test_uncertainty(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+
+"""Tables and figures of doc/questions.md, of the same results as the other pages."""
+import json
+
+import controls
+import summaries
+from timings import RESULTS, ms
+
+
+def figures():
+    """Poses by night by the chain and SIFT; milliseconds of large images; which run measured maps."""
+    found = summaries.read(RESULTS / 'neighbours.csv')
+    night = {(row['detector'], row['descriptor']): row for row in found if (row['place'], row['points']) == ('light: night', '1000')}
+    ours, theirs = night[controls.CHAIN], night[controls.OTHER]
+    data = json.loads((RESULTS / 'map.json').read_text())
+    return {'night_pairs': ours['pairs'], 'night_chain': '%.2f' % float(ours['at_5']), 'night_sift': '%.2f' % float(theirs['at_5']),
+            'large_ms': '%.0f' % ms('IIB_Describe_large', 'default', 8)['AVX2'], 'large_orb_ms': '%.0f' % ms('IIB_Describe_large', 'ORB', 8)['AVX2'],
+            'align_ms': '%.0f' % ms('IIB_Align_noon_and_winter', 50)['AVX2'], 'map_run': '%s (%s)' % (data['date'], data['machine'])}
+
+
+def limits():
+    """How far the camera may zoom, rotate and tilt: half of the right matches without it are the limit."""
+    found = summaries.by(summaries.read(RESULTS / 'views.csv'), 'kind', 'amount', 'method', place='photographs')
+    same = {method: float(found['zoom', '1', method]['right']) for method in ('upright chain', 'matchViews', 'SIFT', 'ORB')}
+
+    def last(method, kind, step):
+        kept = [float(key[1]) for key, row in found.items() if key[::2] == (kind, method) and float(row['right']) >= same[method] / 2]
+        return '%g' % step(kept) if kept else 'none'
+    lines = [[method, last(method, 'zoom', min), last(method, 'zoom', max), last(method, 'rotation', lambda kept: max(k for k in kept if k <= 60)), last(method, 'tilt', max)]
+             for method in same]
+    return summaries.table(['half of the right matches are left at', 'reduced to', 'enlarged by', 'rotation, degrees', 'tilt'], lines)
+
+
+def map_size():
+    """Memory and time of a large map."""
+    def took(row, name):
+        return '%.0f' % row[name] if row[name] else '–'
+    lines = [[format(row['images'], ','), format(row['points'], ','), '%.0f' % row['build_seconds'], '%.0f' % row['file_mb'], '%.0f' % row['resident_mb'],
+              '%d of %d' % (row['found'], row['queries']), took(row, 'found_ms'), took(row, 'refused_ms')] for row in json.loads((RESULTS / 'map.json').read_text())['rows']]
+    return summaries.table(['images in the map', 'points', 'built in, s', 'on the disk, MB', 'resident, MB', 'images found', 'ms each', 'ms each not found'], lines)
+
+
+ALL = {'question_' + make.__name__: make for make in (limits, map_size)}
