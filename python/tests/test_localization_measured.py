@@ -51,8 +51,8 @@ class Measured(unittest.TestCase):
                     redirect_stderr(StringIO()):
                 uncertainty.main()
             rows = [line.split(',') for line in (out / 'sure.csv').read_text().splitlines()[1:]]
-            self.assertEqual([row[1:4] for row in rows], [['map', 'night', '0.png'], ['map', 'night', '1.png']])
-            self.assertLess(max(float(value) for row in rows for value in row[-2:]), 30)
+            self.assertEqual([row[1:6] for row in rows], [['map', 'night', f'{n}.png', f'{what} of Localizer', '1'] for n in range(2) for what in ('centre', 'rotation')])
+            self.assertTrue(all(row[-3] == '1' for row in rows), 'an error is outside the limit of 99 %')
             results, world = json.loads((out / 'results.json').read_text()), (out / 'world.js').read_text()
             video = cv2.VideoCapture(str(out / 'night.webm'))
             self.assertGreater(np.std(video.read()[1]), 10)

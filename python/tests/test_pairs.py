@@ -185,7 +185,7 @@ class Lists(Collection):
         out = self.folder / 'out'
         self.match(out, 'a.png broken.png\nb.png broken.png\na.png b.png\n', 4)
         (out / 'mine').write_text('precious')
-        self.check_error('which is of no earlier run', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.images)
+        self.check_error('which no earlier run wrote', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.images)
         self.check_mistake('cannot be a folder: .*pairs.txt is a file', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.folder / 'pairs.txt')
         self.check_mistake('its camera has 9 x 9 pixels', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images,
                            '--out', self.folder / 'new', '--camera', 'PINHOLE,9,9,5,5,4,4')
@@ -202,7 +202,7 @@ class Lists(Collection):
             self.assertFalse((self.folder / name).exists() and name[0] == 'x')
         (self.folder / 'empty').mkdir()
         (self.folder / 'empty/pairs.csv').touch()
-        self.check_error('holds pairs.csv, which is of no earlier run', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images,
+        self.check_error('holds pairs.csv, which no earlier run wrote', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images,
                          '--out', self.folder / 'empty')
         for wrong in ([], ['--images', self.images], ['--images', self.images, '--out', out, 'a.png'], ['--images', self.images, '--out', out, '--picture', 'x']):
             self.check_mistake('goes with', 'match', '--pairs', self.folder / 'pairs.txt', *wrong)
