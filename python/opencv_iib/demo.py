@@ -64,7 +64,7 @@ def demo(image_a: Path, image_b: Path, out: Path, options: FeatureOptions = Feat
         seen = match_stored(images, turns, allowed, options.points)
         results[0] = max(_judged('IIB', seen.points1, seen.points2), results[0], key=lambda result: int(result.good.sum()))
     for name in ('SIFT', 'ORB') if options.detector == 'HESSIAN' else (options.detector,):
-        other = _own_descriptor(name, views, options.points)
+        other = _own_descriptor(name, views, options.points, results[0].view == (0, 1))
         if other is not None:
             results.append(other)
     write_picture(out, np.vstack([draw([view.stored for view in views], result.points_a, result.points_b, result.good, _caption(result))
@@ -85,7 +85,8 @@ def _judged(name: str, a: np.ndarray, b: np.ndarray) -> Result:
     return Result(name, a, b, good if good.sum() >= MIN_CONSISTENT else np.zeros_like(good))
 
 
-def _own_descriptor(name: str, views: Sequence[View], points: int) -> Optional[Result]:
+def _own_descriptor(name: str, views: Sequence[View], points: int, upright: bool) -> Optional[Result]:
+    """:param upright: whether keypoints are described so, as the recommended chain's are, since no image is rotated."""
     cv2 = import_cv2()
     detector = make_detector(name, points)
     if not detector.descriptorSize():
@@ -95,6 +96,8 @@ def _own_descriptor(name: str, views: Sequence[View], points: int) -> Optional[R
         found = detector.detect(view.image, view.mask)
         if len(found) > points:  # else in its order, by which equal distances are told apart
             found = sorted(found, key=lambda keypoint: -keypoint.response)[:points]
+        for keypoint in found if upright else ():
+            keypoint.angle = 0
         found, described = detector.compute(view.image, found)
         rows.append(view.turn.keypoints(keypoints_to_array(found)))
         codes.append(np.zeros((0, detector.descriptorSize()), np.uint8) if described is None else described)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Builds the programs of README.md and the tutorials against an installation, by CMake and by pkg-config, and runs them:
+"""Builds the programs of README.md, doc/install.md and the tutorials against an installation, by CMake and by pkg-config, and runs them:
 readme_test.py BUILD COMPILER FLAGS GENERATOR"""
 import os
 import pathlib
@@ -58,7 +58,7 @@ def run(*command, code=0, prints=None):
 
 
 def match(program):
-    """What README.md's program does with the pair, and without images that can be read."""
+    """What doc/install.md's program does with the pair, and without images that can be read."""
     run(program, *PAIR, prints=r'[1-9]\d* matches\n')
     for arguments in (['no-such-image.png', PAIR[1]], [PAIR[0], 'no-such-image.png'], []):
         run(program, *arguments, code=1, prints='0 matches\n')
@@ -78,11 +78,11 @@ with tempfile.TemporaryDirectory(prefix='a folder ') as name:  # paths with blan
     work = pathlib.Path(name)
     project, prefix = work / 'project', work / 'prefix'
     project.mkdir()
-    (project / 'CMakeLists.txt').write_text(block('README.md', 'cmake', 'project(') + '''
+    (project / 'CMakeLists.txt').write_text(block('doc/install.md', 'cmake', 'project(') + '''
 add_executable(index index.cpp)
 target_link_libraries(index opencv_iib_index)
 ''')
-    (project / 'match_pair.cpp').write_text(block('README.md', 'cpp', 'int main'))
+    (project / 'match_pair.cpp').write_text(block('doc/install.md', 'cpp', 'int main'))
     (project / 'index.cpp').write_text(INDEX)
     run('cmake', '--install', build, '--prefix', prefix)
     configure(project, 'by cmake')
@@ -92,7 +92,7 @@ target_link_libraries(index opencv_iib_index)
 
     os.environ['PKG_CONFIG_PATH'] = str(next(prefix.rglob('opencv_iib.pc')).parent)
     packaged = shlex.split(run('pkg-config', '--cflags', '--libs', 'opencv_iib'))
-    compile_('match_pair.cpp', block('README.md', 'cpp', 'int main'))
+    compile_('match_pair.cpp', block('doc/install.md', 'cpp', 'int main'))
     match(work / 'match_pair')
     compile_('index.cpp', INDEX)
     run(work / 'index', 'codes by pkg-config')

@@ -143,15 +143,6 @@ def table(shown=None):
     return summaries.table(['points, descriptor', 'ratio', *map(head, columns())], lines)
 
 
-def table_of_best():
-    """The same of UNIVERSAL and the best other descriptor at each detector's points."""
-    best = {}
-    for method in methods():
-        if method[1] != 'IIB SMALL':
-            best.setdefault((method[0], method[1] == 'IIB UNIVERSAL'), method)
-    return table(list(best.values()))
-
-
 def kinds():
     """The chain and normalized SIFT by kind of place."""
     every = [of for of in (of for kinds in GROUPS.values() for of in kinds) if (of, *CHAIN) in found()]

@@ -242,7 +242,7 @@ def pose_methods():
     return table(['', 'points of', 'descriptor', *('%s, %s' % (points, estimator) for points, estimator in ways)], lines)
 
 
-def drop_in():
+def own_descriptors():
     """Right matches at the points of a detector by its own descriptor, the best of two others and the default, and how many times as many, also
     on pairs of sets that nothing was trained on."""
     found, lines = summaries.by(rows('detected_points.csv'), 'place', 'detector', 'descriptor'), []
@@ -257,6 +257,17 @@ def drop_in():
     scenes = {row['place']: row['scenes'] for row in rows('gains.csv')}
     return table(['points of (%s pairs of %s scenes)' % (found['natural', 'ORB', 'IIB']['pairs'], scenes['natural']), 'its own descriptor', 'best of BEBLID and TEBLID', '**IIB**', 'times its own (95 % interval)',
                   'times its own, on the %s pairs of %s scenes that are of no webcam' % (found['light', 'ORB', 'IIB']['pairs'], scenes['light'])], lines)
+
+
+def drop_in():
+    """Right matches by a detector's own descriptor and by the default, all photographs; and by two descriptors of one size, photographs that nothing
+    was trained on."""
+    found = summaries.by(rows('detected_points.csv'), 'place', 'detector', 'descriptor')
+    lines = []
+    for place, detector, ours in (*(('natural', name, 'IIB') for name in ('ORB', 'AKAZE', 'BRISK', 'KAZE', 'SIFT')), ('light', 'ORB', 'IIB SMALL')):
+        before, now = (float(found[place, detector, name]['correct']) for name in (detector, ours))
+        lines.append([detector if ours == 'IIB' else 'ORB, 32 bytes each', '%.0f' % before, '%.0f' % now, '%.1f' % (now / before)])
+    return table(['points of', 'its own descriptor', '**IIB**', 'times'], lines)
 
 
 SIZES = {32: ('IIB SMALL', 'IIB TINY', 'ORB', 'BEBLID-256', 'TEBLID-256', 'BRIEF-256', 'LATCH-256'),
@@ -445,12 +456,12 @@ def run_figures():
 
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
-    drop_in, equal_sizes, presets, views, views_affine, photographs, photographs_of_many, describing, chains, same_points, matching, step_by_step,
+    drop_in, own_descriptors, equal_sizes, presets, views, views_affine, photographs, photographs_of_many, describing, chains, same_points, matching, step_by_step,
     matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time,
     detected_points, uncertainty, night, first_patch)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
-ALL.update({'poses': controls.table_of_best, 'pose_all': controls.table, 'pose_kinds': controls.kinds, 'pose_ratios': controls.by_ratio, 'pose_noise': controls.noise,
+ALL.update({'pose_all': controls.table, 'pose_kinds': controls.kinds, 'pose_ratios': controls.by_ratio, 'pose_noise': controls.noise,
             'pose_neighbours': controls.neighbours, 'pose_cause': controls.cause, 'wrong_poses': controls.wrong, **questions.ALL})
 FIGURES = {'learned': learned_figures, 'controls': controls.figures, 'poses': pose_figures, 'photographs': photograph_figures, 'views': view_figures, 'sure': sure_figures,
            'speed': speed_figures, 'rotation': rotation_figures, 'questions': questions.figures, 'runs': run_figures}
