@@ -118,8 +118,8 @@ def uncertainty():
     for quantity, each in rows.groupby('quantity'):
         shares = each[levels].mul(each['errors'], axis=0).sum() / each['errors'].sum()
         axis.plot([float(level) for level in levels], shares, marker='o', label=quantity)
-    axis.plot([0, 1], [0, 1], color='grey', linestyle='--', label='as told')
-    axis.set(xlabel='told chance', ylabel='share of errors inside', xlim=(0, 1), ylim=(0, 1))
+    axis.plot([0, 1], [0, 1], color='grey', linestyle='--', label='as reported')
+    axis.set(xlabel='level of confidenceLimit', ylabel='share of errors inside', xlim=(0, 1), ylim=(0, 1))
     axis.legend(frameon=False)
     return svg(figure)
 

@@ -30,7 +30,7 @@ def worst(results):
 
 
 def unseen():
-    """Of sixteen rendered places (doc/uncertainty.md says what was decided with them): how many images have a pose, and how many of these are where they are told to be."""
+    """Of the rendered places of doc/uncertainty.md: how many images have a pose, and how many of these are inside the 95 % limit."""
     return [row for row in tables.rows('uncertainty.csv') if row['quantity'] == 'centre of Localizer' and row['data'].startswith('rendered places')]
 
 

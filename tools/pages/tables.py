@@ -413,10 +413,12 @@ def sure_figures():
 
 
 def uncertainty():
-    """In how many pairs something was found, and how many errors are inside what was told."""
-    return table(['', 'data', 'pairs', 'found', 'errors', 'inside 50 %', '95 %', '99 %'],
-                 [[row['quantity'], row['data'], row['pairs'], row['found'], row['errors'],
-                   *('%.0f' % (100 * float(row[level])) if row[level] else '–' for level in ('0.5', '0.95', '0.99'))] for row in rows('uncertainty.csv')])
+    """How many pairs have an answer, how many errors are within the limits, the reported deviation and the logarithmic score."""
+    def cells(row):
+        inside = ('%.0f' % (100 * float(row[level])) if row[level] else '–' for level in ('0.5', '0.95', '0.99'))
+        return [*inside, *('%.2g' % float(row[name]) if row.get(name) else '–' for name in ('deviation', 'score'))]
+    return table(['', 'data', 'pairs', 'found', 'errors', 'inside 50 %', '95 %', '99 %', 'deviation', 'score'],
+                 [[*(row[name] for name in ('quantity', 'data', 'pairs', 'found', 'errors')), *cells(row)] for row in rows('uncertainty.csv')])
 
 
 def photographs(known=True):

@@ -162,8 +162,8 @@ class Figures(unittest.TestCase):
             self.assertEqual(1, target.read_text().count('rendered places, by night'))
             with unittest.mock.patch.object(timings, 'RESULTS', pathlib.Path(folder)):
                 target.replace(source)
-                self.assertIn('| 3 | 2 | 8 | 25 | 100 | 100 |', tables.uncertainty())
-                self.assertIn('| 1 | 0 | 0 | – | – | – |', tables.uncertainty())
+                self.assertIn('| 3 | 2 | 8 | 25 | 100 | 100 | 1 | 1 |', tables.uncertainty())
+                self.assertIn('| 1 | 0 | 0 | – | – | – | – | – |', tables.uncertainty())
                 self.assertEqual(tables.inside('0.95', 'points'), '100 to 100')
                 self.assertIn('<svg', charts.uncertainty())
 
