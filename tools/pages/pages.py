@@ -39,7 +39,7 @@ def results_page(folder):
     page = {folder / 'index.html': rendered('results.html.j2', {**context, 'cost': cost})}
     if ours:
         page[folder / 'cost.svg'] = charts.cost()
-    return {**page, folder / 'poses.svg': charts.scores(context['estimates']['bars'])} if context['estimates']['bars'] else page
+    return {**page, folder / 'scores.svg': charts.scores(context['estimates']['bars'])} if context['estimates']['bars'] else page
 
 
 def localization_page(folder):
