@@ -228,13 +228,13 @@ LocatedImage ImageLocator::find(
     if (!prior && !(found.location.found && isClear))
     {
         const Mat pixels = upright.image(image.pixels), mask = upright.image(image.mask);
+        if (!found.location.found)
+            locateInViews(camera, pixels, mask, found);
         if (isMirrored(camera, pixels, mask, found))
         {
             found.location = Location();
             found.location.reason = "the image is mirrored: flip it";
         }
-        else if (!found.location.found)
-            locateInViews(camera, pixels, mask, found);
     }
     found.prepared = PreparedPicture();
     Location& location = found.location;
