@@ -3,8 +3,8 @@
     from hloc import extract_features, match_features
     features = {'output': 'feats-iib', 'model': {'name': 'iib', 'max_keypoints': 2000},
                 'preprocessing': {'grayscale': True, 'resize_max': 1600}}
-    matches = {'output': 'matches-iib',  # of distances squared, which are bits: .9 of the bits
-               'model': {'name': 'nearest_neighbor', 'do_mutual_check': True, 'ratio_threshold': .9 ** .5}}
+    matches = {'output': 'matches-iib',  # of distances squared, which are bits: .92 of the bits
+               'model': {'name': 'nearest_neighbor', 'do_mutual_check': True, 'ratio_threshold': .92 ** .5}}
     extract_features.main(features, images, outputs)
     match_features.main(matches, pairs, features['output'], outputs)
 

@@ -154,7 +154,7 @@ def _parser() -> _Parser:
     command.add_argument('--pairs', default='exhaustive',
                          help=f'{", ".join(PAIRS)}, or a file with two names a line (%(default)s)')
     command.add_argument('--neighbours', type=int, default=20, metavar='N', help='of sequential, retrieval and gps (%(default)s)')
-    command.add_argument('--ratio', type=float, default=.9, help='ratio test beside the cross-check (%(default)s; 1: none)')
+    command.add_argument('--ratio', type=float, default=.92, help='ratio test beside the cross-check (%(default)s; 1: none)')
     command.add_argument('--no-search', action='store_false', dest='search',
                          help='match images as they are only')
     _choice(command, '--verify', VERIFIERS, str.lower, default='auto', help='two-view geometry (%(default)s)')

@@ -84,7 +84,7 @@ class HierarchicalMatcher(_core.HierarchicalMatcher):
 
     @classmethod
     def createRecommended(cls) -> HierarchicalMatcher:
-        """What suits IIB best where light and view change: EXACT, with cross-check and a maximal ratio of 0.9.
+        """What suits IIB best where light and view change: EXACT, with cross-check and a maximal ratio of 0.92.
 
         For descriptors of any width, as :meth:`create` without level sizes.
         """

@@ -57,7 +57,7 @@ class Extractor(unittest.TestCase):
         self.assertEqual((a.dtype, len(a), len(found[0]['scores'][0])), (np.float32, 1024, a.shape[1]))
         np.testing.assert_array_equal(a.astype(np.float16), a)
         similarity = a.T.astype(np.float64) @ b
-        forward, backward = nearest(similarity, .9 ** .5), nearest(similarity.T, .9 ** .5)
+        forward, backward = nearest(similarity, .92 ** .5), nearest(similarity.T, .92 ** .5)
         mutual = [(i, j) for i, j in enumerate(forward) if j >= 0 and backward[j] == i]
         codes = [opencv_iib.detect_and_describe(image, 300) for image in images]
         np.testing.assert_array_equal(found[0]['keypoints'][0], codes[0].points)

@@ -15,7 +15,7 @@
 namespace iib_tools {
 namespace {
 
-const float RATIOS[] = {.8f, .85f, .9f, .95f};
+const float RATIOS[] = {.8f, .85f, .9f, .92f, .95f};
 const int POINTS[] = {500, 1000, 2000};  // that neighbours are counted of
 const double NOISE = 14;                 // grey levels, of the second image
 const double CLIP = 2;                   // of CLAHE, OpenCV's tutorials' choice

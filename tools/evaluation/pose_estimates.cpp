@@ -14,7 +14,7 @@ namespace iib_tools {
 namespace {
 
 const double CONFIDENCE = 0.9999;
-const float RATIO_BITS = 0.9f, RATIO_FLOAT = 0.8f;  // a nearest neighbour's distance over the second's
+const float RATIO_BITS = 0.92f, RATIO_FLOAT = 0.8f;  // a nearest neighbour's distance over the second's
 const double FAILED = std::numeric_limits<double>::infinity();
 
 //! Pixel to direction in the camera's axes, third coordinate 1.

@@ -289,7 +289,7 @@ Ptr<HierarchicalMatcher> HierarchicalMatcher::createRecommended()
 {
     MatcherParameters p;
     p.crossCheck = true;
-    p.maxRatio = 0.9f;
+    p.maxRatio = 0.92f;
     return makePtr<HierarchicalMatcherImpl>(p);
 }
 

@@ -184,7 +184,7 @@ TEST(IIB_MatcherCreate, recommended)
     oracle.levelSizes.assign(1, 128);
     oracle.images.push_back(randomDescriptors(2, 70, 128));
     oracle.crossCheck = true;
-    oracle.maxRatio = 0.9f;
+    oracle.maxRatio = 0.92f;
     const Mat queries = randomDescriptors(1, 50, 128);
     matcher->add(oracle.images);
     expectKnnAsOracle(*matcher, oracle, queries, 1);

@@ -94,7 +94,7 @@ public:
      */
     CV_WRAP static Ptr<HierarchicalMatcher> create();
 
-    /** @brief What suits IIB best where light and view change: #EXACT, with cross-check and a maximal ratio of 0.9.
+    /** @brief What suits IIB best where light and view change: #EXACT, with cross-check and a maximal ratio of 0.92.
 
     Otherwise as create() without level sizes: for descriptors of any width.
      */

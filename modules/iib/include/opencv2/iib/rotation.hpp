@@ -43,7 +43,7 @@ IIBDescriptorExtractor::BORDER_DROP. Each KeyPoint::angle is set to what it was 
 and in the second the rotation, or -1 if that is within 3 degrees of 0.
 @param extractor with IIBDescriptorExtractor::ORIENTATION_KEYPOINT and without extra channels;
 IIBDescriptorExtractor::PRESET_UNIVERSAL is the best for it.
-@param matcher for binary descriptors of any width, such as HierarchicalMatcher with cross-check and ratio 0.9;
+@param matcher for binary descriptors of any width, such as HierarchicalMatcher with cross-check and ratio 0.92;
 descriptors that were added to it are not used.
 @param matches1to2 queryIdx into keypoints1, trainIdx into keypoints2; empty if an image is, or has no keypoints.
 @param rotation -1 to find it, or the rotation in degrees where it is known (from an IMU or from EXIF data): it must be
