@@ -10,8 +10,7 @@
 #include "opencv2/xfeatures2d.hpp"
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 typedef perf::TestBaseWithParam<tuple<std::string, int>> IIB_Describe;  // what, size
 
@@ -168,5 +167,4 @@ PERF_TEST_P(IIB_Chain, others,
     time();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

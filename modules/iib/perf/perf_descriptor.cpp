@@ -6,8 +6,7 @@
 
 #include <map>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const std::string EXTRA = "2 extra channels";
 
@@ -84,5 +83,4 @@ PERF_TEST_P(IIB_Describe, hd_on_two_threads,
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -4,8 +4,7 @@
 
 #include "perf_precomp.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! Finds nothing: what is left of a NormalizedDetector is the normalization.
 class FindsNothing : public Feature2D
@@ -38,5 +37,4 @@ PERF_TEST_P(IIB_Detect, vga,
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

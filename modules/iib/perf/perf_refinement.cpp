@@ -8,8 +8,7 @@
 #include "opencv2/video/tracking.hpp"
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 #ifdef IIB_PERF_VIDEO
 //! Keeps the image that it is given: the normalized one, if NormalizedDetector asks.
@@ -108,5 +107,4 @@ PERF_TEST_P(IIB_Propagate, moved_and_by_night, testing::Values(1000, 2000, 4000)
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

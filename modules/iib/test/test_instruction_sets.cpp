@@ -15,8 +15,7 @@
 #include <immintrin.h>
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 #if defined(__x86_64__) || defined(_M_X64)
 //! Of those that the library has kernels for and OPENCV_CPU_DISABLE leaves.
@@ -100,5 +99,4 @@ TEST(IIB_InstructionSets, pins_work)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -14,8 +14,7 @@
 #include <unistd.h>
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using cv::iib::FileLock;
 
 struct IIB_MappedIndex_Commits : public IndexFixture
@@ -251,5 +250,4 @@ TEST_F(IIB_MappedIndex_Commits, killed_writers_leave_whole_commits)
 }
 #endif
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

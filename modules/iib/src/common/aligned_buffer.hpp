@@ -6,8 +6,7 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 constexpr int CACHE_LINE = 64;
 //! Values that kernels may read and write past a row, and before a PaddedRows row.
@@ -114,5 +113,4 @@ private:
     AlignedBuffer<T> values;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -8,8 +8,7 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Stores the lowest bytes of a word, the lowest first.
 inline void storeBytes(uint64 word, int bytes, uchar* out)
@@ -73,5 +72,4 @@ public:
     BitWriter& operator=(const BitWriter&) = delete;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

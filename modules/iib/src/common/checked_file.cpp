@@ -7,8 +7,7 @@
 
 #include <cstring>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static const size_t LETTERS = 8;
 
@@ -117,5 +116,4 @@ void CheckedReader::fail(const String& why) const
     CV_Error(Error::StsParseError, name + " cannot be read as " + kindName + ": " + why);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,8 +7,7 @@
 #include "../precomp.hpp"
 #include "opencv2/iib/detail/files.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Throws "NAME is VALUE; it must be WHAT" unless that holds.
 inline void require(
@@ -100,5 +99,4 @@ inline void saveWhole(const Algorithm& algorithm, const String& filename, const 
     writeText(filename, fs.releaseAndGetString());
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -23,8 +23,7 @@
 #include <unistd.h>
 #endif
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 #ifdef _WIN32
 std::wstring systemName(const String& name)
@@ -329,5 +328,4 @@ FileLock::~FileLock()
 }
 #endif
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! The place in [0, size) of a pixel that BORDER_REFLECT_101 brings there at the first reflection or the second.
 inline int reflected(int place, int size)
@@ -107,5 +106,4 @@ private:
     std::vector<double> counts, sums;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

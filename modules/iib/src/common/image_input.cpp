@@ -4,8 +4,7 @@
 
 #include "image_input.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 void checkPixels(const Mat& m, const String& what)
 {
@@ -137,5 +136,4 @@ Mat maskFor(InputArray maskArray, Size imageSize)
     return mask != 0;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* Images that users pass, checked, as single-channel integer maps (CV_8U or CV_16U), on which all later decisions
  are exact. */
@@ -48,5 +47,4 @@ Mat imageFor(const Feature2D& detector, const Mat& image);
  @throws cv::Exception unless it is empty or CV_8UC1 of the image's size. */
 Mat maskFor(InputArray mask, Size imageSize);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

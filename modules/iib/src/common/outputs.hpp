@@ -6,8 +6,7 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /** Writes rows of numbers to a matrix, or to what has a type or a size of its own: numbers of another depth, or elements
  that are rows each, as those of std::vector<Point2f> and std::vector<Vec3d>. */
@@ -20,5 +19,4 @@ inline void writeRows(const Mat& rows, OutputArray out)
             .convertTo(out, type);  // of no rows OpenCV 4.14 creates this type
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -55,8 +55,7 @@
 #define IIB_SUMS_SEGMENTS 0
 #endif
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -322,5 +321,4 @@ inline void freeUpperHalves()
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

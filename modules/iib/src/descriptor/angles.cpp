@@ -10,8 +10,7 @@
 
 #include "grid_pixels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -169,5 +168,4 @@ void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<K
     });
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

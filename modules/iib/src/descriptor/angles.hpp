@@ -7,8 +7,7 @@
 #include "plan.hpp"
 #include "regions.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /** Sets the angles of regions as ORIENTATION_GRADIENT: the direction that prevails among the gradients between 32 x 32
  cells, each of which counts by its magnitude and by a Gaussian of half the region's radius around the centre.
@@ -18,5 +17,4 @@ the directions, and so on. */
 void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<KeyPoint>& keypoints,
         std::vector<SupportRegion>& regions);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

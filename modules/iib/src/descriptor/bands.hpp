@@ -6,8 +6,7 @@
 
 #include "channels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* Bands: the last rows of what is made of an image's channels, as much as fits the cache. */
 
@@ -149,5 +148,4 @@ private:
     const DescriptorKernels& kernels;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

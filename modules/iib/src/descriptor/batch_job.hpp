@@ -8,8 +8,7 @@
 #include "keypoint_batches.hpp"
 #include "plan.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Memory that a thread reuses for each batch of keypoints. No batch reads what another has left there.
 struct Workspace
@@ -53,5 +52,4 @@ struct BatchJob
     Mat& descriptors;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "bands.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -189,5 +188,4 @@ void describeBoxes(const BatchJob& job)
     (job.grey.depth() == CV_8U && sumsAreShort(job) ? describeBatch<short> : describeBatch<int>)(job);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "batch_job.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! The pixels that the boxes of a region cover, rotated by any angle or upright, in whole squares; some may be reflected.
 Rect boxPixels(const SupportRegion& region, int border, Size image);
@@ -19,5 +18,4 @@ are linear in them and so rotate as they do, and those of |gx| and |gy| come fro
 |gx - gy|, that is, of the gradient's magnitude in four directions. Boxes stay upright; only their centres turn. */
 void describeBoxes(const BatchJob& job);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "../common/image_input.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 std::vector<Channel> channelsInUse(const Parameters& p, const Mat& grey, const std::vector<Mat>& extra)
 {
@@ -149,5 +148,4 @@ template <typename T> void ChannelRows<T>::compute(int y, T* out, ptrdiff_t abov
 template class ChannelRows<short>;
 template class ChannelRows<int>;
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,8 +7,7 @@
 #include "kernels/kernels.hpp"
 #include "regions.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! A channel's values are whole numbers >= 0, so that sums over cells are exact.
 struct Channel
@@ -93,5 +92,4 @@ private:
     const T* planes[GROUP_CHANNELS];
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

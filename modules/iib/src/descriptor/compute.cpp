@@ -10,8 +10,7 @@
 #include "rotated.hpp"
 #include "upright.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -91,5 +90,4 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
     });
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "plan.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Whether the keypoint's support region, upright or rotated, lies inside the image.
 bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image);
@@ -18,5 +17,4 @@ bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image);
 void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Mat>& extra,
         const std::vector<KeyPoint>& keypoints, Mat& descriptors);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

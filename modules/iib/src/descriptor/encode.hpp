@@ -6,8 +6,7 @@
 
 #include "batch_job.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 template <typename Cell> void widen(const CellGrid<Cell>& cells, CellGrid<double>& wide)
 {
@@ -77,5 +76,4 @@ struct LevelWriter
     }
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

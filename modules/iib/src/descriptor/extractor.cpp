@@ -9,8 +9,7 @@
 
 #include "opencv2/core/utils/trace.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -243,5 +242,4 @@ Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::create(float scaleFactor, in
     return makePtr<IIBDescriptorExtractor_Impl>(p);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,8 +7,7 @@
 #include "bands.hpp"
 #include "batch_job.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /** The grid of points over a region.
 @param n points in a row, up to MAX_SAMPLES_IN_ROW, `sub` x `sub` of them a cell. @param border one of IIB::Border. */
@@ -181,5 +180,4 @@ private:
     int index[MAX_SAMPLES];
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

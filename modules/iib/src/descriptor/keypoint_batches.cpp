@@ -4,8 +4,7 @@
 
 #include "keypoint_batches.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -146,5 +145,4 @@ KeyPointBatch makeBatch(const std::vector<Rect>& regions, const Indices& keypoin
     return batch;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

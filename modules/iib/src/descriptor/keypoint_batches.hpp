@@ -6,8 +6,7 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Keypoints that are described together, from integral images over their common area.
 struct KeyPointBatch
@@ -43,5 +42,4 @@ std::vector<std::vector<int>> cutBatches(
 //! @param regions of all keypoints of an image. @param keypoints their indices, one or more.
 KeyPointBatch makeBatch(const std::vector<Rect>& regions, const std::vector<int>& keypoints);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

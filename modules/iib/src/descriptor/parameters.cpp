@@ -9,8 +9,7 @@
 
 #include "../common/file_numbers.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static void checkBoxes(const Parameters& p)
 {
@@ -116,5 +115,4 @@ Parameters readParameters(const FileNode& node, const Parameters& present)
     return p;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

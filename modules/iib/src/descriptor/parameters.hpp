@@ -6,8 +6,7 @@
 
 #include "kernels/boxes.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static constexpr int MAX_EXTRA_CHANNELS = 16, ALL_CHANNELS = 63;
 
@@ -72,5 +71,4 @@ void writeParameters(FileStorage& fs, const Parameters& parameters);
  @throws cv::Exception for another format and for what is no parameter or out of its range. */
 Parameters readParameters(const FileNode& node, const Parameters& present);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -4,8 +4,7 @@
 
 #include "plan.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! The bits of a phase of a level that are in use. @param group which four of the channels.
 static ChosenBits chosenBits(const Parameters& p, int level, int group, int index)
@@ -112,5 +111,4 @@ Ptr<const DescriptorPlan> makePlan(const Parameters& p)
     return makePtr<const DescriptorPlan>(plan);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

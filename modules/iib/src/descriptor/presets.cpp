@@ -4,8 +4,7 @@
 
 #include "parameters.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -129,5 +128,4 @@ Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::createFor(const Ptr<Feature2
     return extractor;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,8 +7,7 @@
 #include "../common/geometry.hpp"
 #include "parameters.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! A bound of the lengths of the n cells in a row of a support region.
 inline double longestCell(double side, int n) { return std::ceil(side / n); }
@@ -87,5 +86,4 @@ inline Rect rotatedPixels(const SupportRegion& region, int border, Size image)
     return Rect(x.start, y.start, x.size(), y.size());
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,8 +7,7 @@
 #include "encode.hpp"
 #include "grid_pixels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -158,5 +157,4 @@ void describeRotated(const BatchJob& job)
     (is16Bit(job.channels) ? describeBatch<int> : describeBatch<short>)(job);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,12 +6,10 @@
 
 #include "batch_job.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /** Describes a batch of rotated regions by quads. Integral images cannot serve, since |gx| does not rotate with the region: it is
  sampled on a grid of points, and the gradient is rotated at each. */
 void describeRotated(const BatchJob& job);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

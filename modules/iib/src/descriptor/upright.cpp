@@ -7,8 +7,7 @@
 #include "bands.hpp"
 #include "encode.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -89,5 +88,4 @@ void describeUpright(const BatchJob& job)
     }
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

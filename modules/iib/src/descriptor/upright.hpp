@@ -6,11 +6,9 @@
 
 #include "batch_job.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Describes a batch of upright regions by quads, from sums over cells.
 void describeUpright(const BatchJob& job);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -9,8 +9,7 @@
 
 #include <tuple>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -230,5 +229,4 @@ std::vector<KeyPoint> findBlobs(
     return keypoints;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Parameters of HessianDetector, described there.
 struct HessianParameters
@@ -30,5 +29,4 @@ struct HessianParameters
 std::vector<KeyPoint> findBlobs(
         const Mat& normalized, const HessianParameters& parameters, const Mat& mask, int reduction);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

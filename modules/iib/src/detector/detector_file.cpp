@@ -6,8 +6,7 @@
 
 #include "../common/file_numbers.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -83,5 +82,4 @@ Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present)
     return present;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* The detector of an extractor in a file. Files hold HessianDetector, NormalizedDetector and ORB, which create()
  starts with and which writes nothing of itself; of others they hold the name, and what those write themselves. */
@@ -19,5 +18,4 @@ void writeDetector(FileStorage& fs, const Feature2D& detector);
  be of it: it reads the parameters and is returned. @throws cv::Exception (StsParseError) that tells what to do. */
 Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -12,8 +12,7 @@
 
 #include <numeric>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -145,5 +144,4 @@ Ptr<HessianDetector> HessianDetector::create(
     return makePtr<HessianDetector_Impl>(p);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "../normalization/kernels/kernels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -156,5 +155,4 @@ void ScaleSpace::makeResponses(int y)
         }
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

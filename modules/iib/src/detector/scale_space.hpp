@@ -8,8 +8,7 @@
 
 #include <array>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! The scales of one resolution. The scales next to those with keypoints are among them, to be compared with.
 struct Octave
@@ -67,5 +66,4 @@ private:
     std::vector<std::array<const float*, 3>> nearRows;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "opencv2/iib/detail/checked_file.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static const FileKind KIND = {"IIBINDEX", 1, "an index of HierarchicalMatcher"};
 static const size_t CHUNK_ROWS = 4096;  // what is unpacked or packed at once
@@ -75,5 +74,4 @@ Ptr<PackedCodes> loadCodes(const String& filename, MatcherParameters& parameters
     return codes;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -8,8 +8,7 @@
 
 #include "opencv2/iib/detail/packed_codes.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* Format 1 of an index, a checked file: u32: number of levels, each level's bytes, mode, cross-check; f32: maximal
 ratio, each threshold; u64: number of images, each image's rows; the descriptors of all images. Descriptors pass through
@@ -21,5 +20,4 @@ void saveCodes(const String& filename, const MatcherParameters& parameters, cons
 //! Reads what saveCodes wrote. @throws cv::Exception unless the file is whole and its parameters are valid.
 Ptr<PackedCodes> loadCodes(const String& filename, MatcherParameters& parameters);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

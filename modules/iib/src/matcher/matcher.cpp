@@ -7,8 +7,7 @@
 #include "index_file.hpp"
 #include "search.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -300,5 +299,4 @@ Ptr<HierarchicalMatcher> HierarchicalMatcher::loadIndex(const String& filename)
     return makePtr<HierarchicalMatcherImpl>(parameters, codes);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

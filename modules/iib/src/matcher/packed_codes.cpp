@@ -10,8 +10,7 @@
 #include "parameters.hpp"
 #include "search.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK;
 
@@ -185,5 +184,4 @@ void PackedCodes::findNearest(const std::vector<int>& levelSizes, const std::vec
         }
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -4,8 +4,7 @@
 
 #include "pair_scan.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -176,5 +175,4 @@ void scanWithin(
         });
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

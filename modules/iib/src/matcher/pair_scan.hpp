@@ -11,8 +11,7 @@
 #include <atomic>
 #include <new>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Work of searches, in bits, to which any thread adds.
 struct SearchCost
@@ -116,5 +115,4 @@ void scanNearest(const SearchInput& input, const Range& queries, KnnTable& forQu
 void scanWithin(const SearchInput& input, const Range& queries, int radius,
         std::vector<std::vector<MatchKey>>& lists);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

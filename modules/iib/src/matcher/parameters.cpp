@@ -6,8 +6,7 @@
 
 #include "../common/file_numbers.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 void checkThreshold(float threshold)
 {
@@ -109,5 +108,4 @@ MatcherParameters readParameters(const FileNode& node, const char* name, const M
     return p;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 struct MatcherParameters
 {
@@ -40,5 +39,4 @@ void writeParameters(FileStorage& fs, const MatcherParameters& p);
 //! writes it. What the node does not have stays as it was; levelSizes it must have.
 MatcherParameters readParameters(const FileNode& node, const char* name, const MatcherParameters& before);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include <mutex>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -177,5 +176,4 @@ std::vector<std::vector<MatchKey>> findWithin(const SearchInput& input, int radi
     return result;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "pair_scan.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! A mask for each image of the index, or none if all are empty; throws where one does not fit.
 std::vector<Mat> checkedMasks(InputArrayOfArrays masks, int queries, const PackedCodes& index);
@@ -37,5 +36,4 @@ PruningPolicy thresholdPolicy(const CodeLayout& layout, const std::vector<float>
 //! Bounds relative to the query's least distances so far.
 PruningPolicy adaptivePolicy(const CodeLayout& layout);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -8,8 +8,7 @@
 
 #include <array>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -241,5 +240,4 @@ private:
 
 Mat normalizeLocally(const Mat& grey, double sigma) { return Normalizer(grey, sigma).run(); }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

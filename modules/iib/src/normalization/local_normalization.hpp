@@ -6,8 +6,7 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /** Local normalization: 128 + 40 (I - G*I) / (sqrt(G*(I - G*I)^2) + 2), as 8-bit pixels.
 
@@ -18,5 +17,4 @@ smallest, and linear interpolation back: of a variance of sigma^2 up to the roun
 @param sigma in pixels, 1 to 256. */
 Mat normalizeLocally(const Mat& grey, double sigma);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -8,8 +8,7 @@
 #include "../common/image_input.hpp"
 #include "../normalization/local_normalization.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -182,5 +181,4 @@ void MatchRefiner::refine(std::vector<Refinement>& matches) const
             matches.size() / MATCHES_OF_A_THREAD);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -8,8 +8,7 @@
 
 #include "opencv2/iib/detail/prepared_image.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! A match to be refined, and what was found.
 struct Refinement
@@ -65,5 +64,4 @@ struct PreparedPair
     PreparedPair(InputArray image1, InputArray image2, const std::vector<DMatch>& matches);
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -4,8 +4,7 @@
 
 #include "patch_aligner.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -470,5 +469,4 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
             place.warp * (1 / unit)};
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,8 +7,7 @@
 #include "../common/aligned_buffer.hpp"
 #include "kernels/kernels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! A patch on an image: its centre, and the linear warp from the patch's units to pixels (affine, with the centre).
 struct PatchPlace
@@ -104,5 +103,4 @@ private:
     AlignedBuffer<short> samples, ones;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

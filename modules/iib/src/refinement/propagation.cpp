@@ -4,8 +4,7 @@
 
 #include "propagation.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -251,5 +250,4 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
     }
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

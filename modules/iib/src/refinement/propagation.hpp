@@ -6,12 +6,10 @@
 
 #include "match_refiner.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Adds the matches of further keypoints that the refined ones lead to.
 void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoints1,
         const std::vector<KeyPoint>& keypoints2, std::vector<Refinement>& matches);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

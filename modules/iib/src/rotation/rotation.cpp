@@ -9,8 +9,7 @@
 #include "opencv2/iib/rotation.hpp"
 #include "opencv2/imgproc.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -214,5 +213,4 @@ double matchRotated(InputArray image1, InputArray image2, const Ptr<IIBDescripto
     return rotation;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -4,8 +4,7 @@
 
 #include "../support/describe.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 typedef testing::TestWithParam<int> IIB_Bits_Mapping;
 
@@ -247,5 +246,4 @@ TEST(IIB_Property, rotated_with_the_image)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

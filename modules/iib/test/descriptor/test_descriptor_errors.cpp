@@ -5,8 +5,7 @@
 #include "../support/test_errors.hpp"
 #include "../support/describe.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const Size SIZE(60, 50);
 
@@ -141,5 +140,4 @@ TEST(IIB_Errors, no_extractor_detects_by_itself)
     EXPECT_EQ("Feature2D.ORB", a->getDetector()->getDefaultName());
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

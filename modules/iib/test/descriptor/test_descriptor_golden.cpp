@@ -10,8 +10,7 @@
     opencv_test_iib --gtest_filter='IIB_Golden*' | grep '^ *{ "'
 
  The images and keypoints are made of integers alone (test_images.cpp). */
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 struct Golden
 {
@@ -122,5 +121,4 @@ String nameOf(const testing::TestParamInfo<Golden>& info)
 
 INSTANTIATE_TEST_CASE_P(/**/, IIB_Golden, testing::ValuesIn(GOLDEN), nameOf);
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

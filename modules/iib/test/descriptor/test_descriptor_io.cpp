@@ -6,8 +6,7 @@
 #include "../support/test_errors.hpp"
 #include "../support/describe.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 void expectSame(const IIB& expected, const IIB& actual)
 {
@@ -215,5 +214,4 @@ TEST(IIB_DetectorFile, damage_throws_and_changes_nothing)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

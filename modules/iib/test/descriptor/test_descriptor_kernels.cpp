@@ -7,8 +7,7 @@
 #include "../../src/descriptor/kernels/kernels.hpp"
 #include "../../src/descriptor/plan.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace cv::iib;
 
@@ -170,5 +169,4 @@ TEST(IIB_DescriptorKernels, bits_are_written_where_they_belong)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -6,8 +6,7 @@
 #include "../support/test_errors.hpp"
 #include "../support/temporary_file.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 struct DetectorCase
 {
@@ -272,5 +271,4 @@ TEST(IIB_CreateFor, errors)
                 [=] { IIB::createFor(ORB::create(), preset); });
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -8,8 +8,7 @@
 
 #include <numeric>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using cv::iib::KeyPointBatch;
 typedef std::vector<Rect> Regions;
@@ -178,5 +177,4 @@ TEST(IIB_KeyPointBatches, rounds_and_pixels_are_bounded_for_every_layout)
         }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -6,8 +6,7 @@
 #include "../support/test_errors.hpp"
 #include "../support/describe.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const double UNKNOWN = -1;
 
@@ -273,5 +272,4 @@ TEST(IIB_MatchRotated, the_least_size_is_one)
             rotating(), HierarchicalMatcher::createRecommended(), matches));
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

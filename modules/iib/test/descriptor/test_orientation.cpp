@@ -7,8 +7,7 @@
 #include "../support/test_errors.hpp"
 #include "../../src/descriptor/kernels/kernels.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 TEST(IIB_Orientation, as_atan2_for_all_gradients_of_8_bits)
 {
@@ -232,5 +231,4 @@ TEST(IIB_Rotation, errors)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -8,8 +8,7 @@
 
 #include <memory>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 Ptr<IIB> rotating(int granularity = 4, int channels = IIB::CHANNELS_DEFAULT)
 {
@@ -176,5 +175,4 @@ TEST(IIB_Rotated, area_of_more_than_an_int_of_pixels)
                 0, differingBits(all.row(i), describe(*iib, image, std::vector<KeyPoint>(1, keypoints[i]))));
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

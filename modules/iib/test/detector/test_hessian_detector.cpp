@@ -6,8 +6,7 @@
 #include "../normalization/normalization_oracle.hpp"
 #include "hessian_oracle.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using oracle::found;
 
@@ -242,5 +241,4 @@ TEST(IIB_HessianDetector, strongest_first_and_fewer_are_the_first_of_more)
     EXPECT_EQ(201u, found(*HessianDetector::create(0, threshold), image).size());
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

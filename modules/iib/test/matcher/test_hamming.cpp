@@ -5,8 +5,7 @@
 #include "../support/matcher_oracle.hpp"
 #include "../../src/matcher/kernels/hamming.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 typedef std::vector<int> Levels;
 typedef std::map<std::pair<int, int>, int> Distances;  // of (query, train code)
@@ -173,5 +172,4 @@ TEST(IIB_Hamming, nearest_as_the_naive_loop)
                 }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -15,8 +15,7 @@
 #include <unistd.h>
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 Ptr<HierarchicalMatcher> matcherOf(int rows)
 {
@@ -303,5 +302,4 @@ TEST(IIB_IndexFile, version_0_is_not_called_newer)
     expectError(Error::StsParseError, "newer", [&] { HierarchicalMatcher::loadIndex(file.name); });
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

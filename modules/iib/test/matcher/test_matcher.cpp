@@ -6,8 +6,7 @@
 
 #include <numeric>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 // A descriptor's width cut into levels: coarse ones of 1/8 and 1/4, the rest last.
 std::vector<int> levelsOf(int bytes)
@@ -209,5 +208,4 @@ TEST(IIB_MatcherClone, empty_clones_count_for_the_original)
     EXPECT_EQ(1, matcher->matchCost());
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -14,8 +14,7 @@
 #include <unistd.h>
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 // The edge cases of DescriptorMatcher in which BFMatcher fails or surprises, and its core's own tests in their
 // Hamming form.
@@ -403,5 +402,4 @@ TEST(IIB_MatcherEdges, takes_views_and_gives_vectors)
     EXPECT_EQ(39, nearest[39]);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

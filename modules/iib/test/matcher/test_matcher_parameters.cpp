@@ -6,8 +6,7 @@
 #include "../support/temporary_file.hpp"
 #include "../support/test_errors.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 // As the first version wrote them.
 const String GOOD = "%YAML:1.0\n---\nlevelSizes: [ 8, 24 ]\nmode: 2\nthresholds: [ 3.0000001192092896e-01 ]\n"
@@ -230,5 +229,4 @@ TEST(IIB_MatcherCreate, save_write_load_and_read_in_all_directions)
     });
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

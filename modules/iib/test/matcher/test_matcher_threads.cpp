@@ -7,8 +7,7 @@
 
 #include <thread>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const std::vector<int> LEVELS = {2, 8, 32};
 
@@ -144,5 +143,4 @@ INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Toggle,
                                  (int)HierarchicalMatcher::ADAPTIVE),
                 testing::Bool(), testing::Bool()));
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -4,8 +4,7 @@
 
 #include "../support/describe.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 struct DetectorGain
 {
@@ -36,5 +35,4 @@ TEST(IIB_NormalizedDetector, right_matches_by_changed_light)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

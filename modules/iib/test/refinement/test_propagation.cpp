@@ -7,8 +7,7 @@
 
 #include <set>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! A scene, and what propagateMatches() makes of some of its matches.
 class IIB_Propagation : public testing::Test
@@ -236,5 +235,4 @@ TEST_F(IIB_Propagation, without_matches_all_is_empty_and_errors_say_what_is_wron
     });
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

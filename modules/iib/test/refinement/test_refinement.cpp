@@ -8,8 +8,7 @@
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const RefinementScene& scene() { return RefinementScene::seven(); }
 
@@ -337,5 +336,4 @@ TEST(IIB_Refinement, without_matches_all_is_empty_and_errors_say_what_is_wrong)
             call(image, image, {KeyPoint(3, 3, 0)}, match[0]));
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -7,8 +7,7 @@
 
 #include "opencv2/imgproc.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 double median(std::vector<double> values)
 {
@@ -233,5 +232,4 @@ TEST(IIB_RefinementAccuracy, photographs_by_other_lamps)
     EXPECT_LT(errors.inside(2), .95);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

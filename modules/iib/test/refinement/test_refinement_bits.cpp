@@ -8,8 +8,7 @@
 
 #include "opencv2/imgproc.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! refineMatches as its documentation says it, on doubles: for keypoints without angles and of one size.
 class Oracle
@@ -215,5 +214,4 @@ TEST(IIB_RefinementGolden, bits)
     expectHash(CV_BIG_UINT(0xf5d5074e5807b25f), points2);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -5,8 +5,7 @@
 #include "../../src/refinement/kernels/kernels.hpp"
 #include "../support/test_images.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! Kernels beside what they say they do, written down one value after the other.
 class IIB_RefinementKernels : public testing::Test
@@ -287,5 +286,4 @@ TEST_F(IIB_RefinementKernels, subtract_and_autocorrelate)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

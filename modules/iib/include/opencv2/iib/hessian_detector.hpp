@@ -7,8 +7,7 @@
 
 #include "opencv2/iib/features.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @addtogroup iib
 //! @{
@@ -83,7 +82,6 @@ public:
 
 //! @}
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

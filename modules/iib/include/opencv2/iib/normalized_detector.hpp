@@ -7,8 +7,7 @@
 
 #include "opencv2/iib/features.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @addtogroup iib
 //! @{
@@ -54,7 +53,6 @@ public:
 
 //! @}
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

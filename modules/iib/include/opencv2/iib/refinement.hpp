@@ -7,8 +7,7 @@
 
 #include "opencv2/iib/features.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @addtogroup iib
 //! @{
@@ -75,7 +74,6 @@ CV_EXPORTS_W void propagateMatches(InputArray image1, const std::vector<KeyPoint
 
 //! @}
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

@@ -7,8 +7,7 @@
 
 #include "opencv2/iib/descriptor.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @addtogroup iib
 //! @{
@@ -65,7 +64,6 @@ CV_EXPORTS_W double matchRotated(InputArray image1, InputArray image2,
 
 //! @}
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

@@ -6,8 +6,7 @@
 
 #include "kernels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* MAPPING_BOXES: means over boxes on overlapping grids, from an integral image over squares of BOX_SQUARE x BOX_SQUARE pixels
  with BOX_LANES values side by side, so that one vector (or two) holds a corner of a box in all channels. RingRows of it
@@ -149,5 +148,4 @@ struct BoxKernels
 //! The kernels for this machine, as descriptorKernels() chooses them.
 const BoxKernels& boxKernels();
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

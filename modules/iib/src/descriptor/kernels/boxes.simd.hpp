@@ -7,8 +7,7 @@
 #include "bits.simd.hpp"
 #include "boxes.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -403,5 +402,4 @@ template <typename T> BoxSumKernels<T> boxSumKernels()
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,8 +7,7 @@
 #include "kernels.hpp"
 #include "vectors.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -131,5 +130,4 @@ constexpr decltype(DescriptorKernels::columnCells) columnCells = 0;
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,8 +7,7 @@
 #include "orientation.hpp"
 #include "quads.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* What is compiled for each instruction set, as one table of functions. A pixel's value T is short for 8-bit images
  and int for 16-bit ones; a Sum is ushort or unsigned, modulo 2^16 or 2^32. */
@@ -185,5 +184,4 @@ struct DescriptorKernels
 //! Those for this machine, the fastest that cv::setUseOptimized and OPENCV_CPU_DISABLE allow.
 const DescriptorKernels& descriptorKernels();
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "../../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* Mappings f(x) of the four cell means of a quad to bits (paper, "Binary Bit Formulation"). V is a vector of integers
  or of doubles that hold integers, with least, greatest, fourTimes and quarter; put(bit, b) takes what a comparison of V
@@ -83,5 +82,4 @@ private:
     }
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

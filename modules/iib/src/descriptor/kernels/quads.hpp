@@ -10,8 +10,7 @@
 #include "../../common/bit_io.hpp"
 #include "opencv2/iib/detail/places.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 constexpr int MAX_GRANULARITY = 6;
 
@@ -168,5 +167,4 @@ struct Weights
     bool equal() const { return first == second; }
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,8 +7,7 @@
 #include "kernels.hpp"
 #include "vectors.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -252,5 +251,4 @@ template <typename T> RowKernels<T> rowKernels() { return {imageChannelRows<T>, 
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

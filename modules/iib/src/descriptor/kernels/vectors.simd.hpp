@@ -8,8 +8,7 @@
 
 // What the descriptor's kernels alone need beside the common vocabulary, raw intrinsics among it.
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -361,5 +360,4 @@ private:
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -8,8 +8,7 @@
 
 #include <cstring>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 constexpr int CONTRAST_BITS = 6;  //!< smoothed rows are normalized grey levels in 2^-6
 
@@ -67,5 +66,4 @@ struct DetectorKernels
 //! The kernels for this machine.
 const DetectorKernels& detectorKernels();
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

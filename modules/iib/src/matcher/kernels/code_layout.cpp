@@ -7,8 +7,7 @@
 
 #include <cstring>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static const int WORD = 4, SAMPLE = 4;  // one word in SAMPLE
 
@@ -148,5 +147,4 @@ void CodeLayout::fetch(const unsigned* block, int lane, unsigned* plain) const
     }
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -10,8 +10,7 @@
 #include <climits>
 #include <vector>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! A neighbour as one number: distance above, INDEX_BITS of index below, so that ties go to the lowest index.
 typedef uint64 MatchKey;
@@ -120,5 +119,4 @@ struct HammingKernels
 //! Those of the widest instruction set at hand. cv::setUseOptimized changes the answer: keep it with the packed codes.
 const HammingKernels& hammingKernels();
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,8 +7,7 @@
 #include "../../common/aligned_buffer.hpp"
 #include "scanner.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
@@ -304,5 +303,4 @@ private:
 
 }  // namespace
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -12,8 +12,7 @@
 
 #include "opencv2/iib/detail/code_layout.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
@@ -343,5 +342,4 @@ private:
 
 }  // namespace
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "../../common/aligned_buffer.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! What is normalized, pixels, means and differences, are grey levels of 0..255 in 2^-7.
 constexpr int GREY_BITS = 7;
@@ -42,5 +41,4 @@ struct NormalizationKernels
 //! The kernels for this machine.
 const NormalizationKernels& normalizationKernels();
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

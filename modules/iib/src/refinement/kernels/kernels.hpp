@@ -6,8 +6,7 @@
 
 #include "../../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* A patch is PATCH x PATCH samples, 2 units apart: images are smoothed so that nothing is lost between them. All is
  exact on integers. */
@@ -110,5 +109,4 @@ struct RefinementKernels
 //! The kernels for this machine.
 const RefinementKernels& refinementKernels();
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -9,8 +9,7 @@
 
 #include <fstream>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @cond IGNORED
 
@@ -116,7 +115,6 @@ private:
 
 //! @endcond
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

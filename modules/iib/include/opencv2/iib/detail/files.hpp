@@ -10,8 +10,7 @@
 #include <cstdio>
 #include <iosfwd>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @cond IGNORED
 
@@ -104,7 +103,6 @@ private:
 
 //! @endcond
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

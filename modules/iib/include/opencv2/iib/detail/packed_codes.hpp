@@ -7,8 +7,7 @@
 
 #include "opencv2/iib/detail/code_layout.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @cond IGNORED
 
@@ -103,7 +102,6 @@ private:
 
 //! @endcond
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

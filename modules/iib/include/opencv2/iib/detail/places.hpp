@@ -7,8 +7,7 @@
 
 #include "opencv2/iib/descriptor.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @cond IGNORED
 
@@ -53,7 +52,6 @@ inline int placesInRow(int mapping, int level)
 
 //! @endcond
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

@@ -9,8 +9,7 @@
 
 #include "opencv2/core.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @cond IGNORED
 
@@ -39,7 +38,6 @@ CV_EXPORTS void propagateMatches(const PreparedImage& image1, const std::vector<
 
 //! @endcond
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif
