@@ -83,7 +83,7 @@ template <int CHANNELS, typename T> void greyRow(const T* in, T* out, int width)
     for (int x = 0; x <= width - N; x += N)
         vector(x);
     if (width >= N)
-        return vector(width - N);  // may overlap the one before
+        return vector(width - N);  // may overlap the vector before
     for (int x = 0; x < width; x++, in += CHANNELS)
         out[x] = (T)(((unsigned)in[0] * BLUE + (unsigned)in[1] * GREEN + (unsigned)in[2] * RED +
                              (1 << (SHIFT - 1))) >>

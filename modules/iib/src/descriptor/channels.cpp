@@ -94,7 +94,7 @@ template <typename T> ImageRows<T> ChannelRows<T>::imageRows(int y)
     const T* around[3];
     for (int i = 0; i < 3; i++)
     {
-        // pixels beyond the image repeat its border, as Sobel's BORDER_REPLICATE
+        // BORDER_REPLICATE, as in the paper's reference
         const int imageY = std::min(std::max(y + i - 1, 0), gradientOf->rows - 1);
         T* out = row(imageY % IMAGE_ROWS);
         around[i] = out;
@@ -114,7 +114,7 @@ template <typename T> void ChannelRows<T>::reflect(T* out) const
 {
     const int width = channels[0].map.cols, end = area.x + area.width;
     T* const pixels = out - origin;
-    // Reflected once, by fast copies; a cell at the bounds may hold a pixel that is reflected twice.
+    // fast copies for one reflection; then the pixels that are reflected twice
     const int left = std::min(-area.x, width - 1), right = std::min(end - width, width - 1);
     if (left > 0)
         std::reverse_copy(pixels + 1, pixels + 1 + left, pixels - left);

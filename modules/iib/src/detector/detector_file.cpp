@@ -55,7 +55,7 @@ Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present)
 {
     const String name = node.isMap() && node["class"].isString() ? (String)node["class"] : String();
     if (name.empty())
-        CV_Error(Error::StsParseError, "the file's detector has no class; it must be what write() wrote");
+        CV_Error(Error::StsParseError, "the file's detector has no class; read a node of write()");
     const FileNode parameters = node["parameters"];
     if (name == "Feature2D.ORB")
         return readOrb(parameters);
@@ -70,7 +70,7 @@ Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present)
         const Ptr<NormalizedDetector> wrapper = present.dynamicCast<NormalizedDetector>();
         const Ptr<Feature2D> inside =
                 readDetector(node["detector"], wrapper ? wrapper->getDetector() : present);
-        float sigma = 0;  // refused by create()
+        float sigma = 0;  // create() refuses it
         readNumber(node, "sigma", sigma);
         return NormalizedDetector::create(inside, sigma);
     }

@@ -8,6 +8,7 @@
 #include "blobs.hpp"
 
 #include "opencv2/core/utils/trace.hpp"
+#include "opencv2/iib/detail/files.hpp"
 #include "opencv2/iib/hessian_detector.hpp"
 
 #include <numeric>
@@ -98,7 +99,7 @@ public:
     using Feature2D::write;
     void write(FileStorage& fs) const CV_OVERRIDE
     {
-        // One node, which is then the first of a file: Algorithm::load() reads what Feature2D::write(file) wrote.
+        // one node, so that Algorithm::load() reads files of Feature2D::write(filename)
         fs << "HessianDetector"
            << "{"
            << "format" << 1 << "maxFeatures" << p.maxFeatures << "threshold" << p.threshold << "scales"

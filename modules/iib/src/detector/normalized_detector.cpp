@@ -8,6 +8,7 @@
 #include "detector_file.hpp"
 
 #include "opencv2/core/utils/trace.hpp"
+#include "opencv2/iib/detail/files.hpp"
 #include "opencv2/iib/normalized_detector.hpp"
 
 namespace cv { namespace iib {

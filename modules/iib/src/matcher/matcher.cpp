@@ -17,7 +17,7 @@ DMatch toMatch(const PackedCodes& trains, int query, MatchKey n)
     return DMatch(query, (int)(indexOf(n) - trains.start(image)), (int)image, (float)distanceOf(n));
 }
 
-//! Adds a row of the matches of a query; with `compact`, only if it has any.
+//! Adds a query's row of matches; with `compact`, only if it has any.
 void addMatches(const PackedCodes& trains, int query, const MatchKey* begin, const MatchKey* end,
         bool compact, std::vector<std::vector<DMatch>>& matches)
 {
@@ -74,7 +74,7 @@ public:
     void setThresholds(const std::vector<float>& thresholds) CV_OVERRIDE
     {
         for (float threshold : thresholds)
-            checkThreshold(threshold);  // also where no level needs one
+            checkThreshold(threshold);  // also for a single level, which uses none
         const bool one = thresholds.size() == 1;
         set(&MatcherParameters::thresholds,
                 one ? std::vector<float>(parameters.stages(), thresholds[0]) : thresholds);
@@ -157,8 +157,8 @@ public:
     void saveIndex(const String& filename) const CV_OVERRIDE
     {
         if (!index)
-            CV_Error(Error::StsBadArg, "There is nothing to save: a matcher without level sizes knows them "
-                                       "only after descriptors were added");
+            CV_Error(Error::StsBadArg,
+                    "There is nothing to save: add descriptors, or create the matcher with level sizes");
         saveCodes(filename, parameters, *index);
     }
 
@@ -212,11 +212,10 @@ private:
         MatcherParameters changed = parameters;
         changed.*member = value;
         check(changed);
-        std::swap(parameters, changed);  // which cannot fail half-way
+        std::swap(parameters, changed);
     }
 
-    //! Where there are no level sizes: an index for codes of that width, which holds the images without rows that
-    //! came before it.
+    //! For a matcher without level sizes: an index for codes of this width, with the images without rows so far.
     Ptr<PackedCodes> indexFor(int width) const
     {
         MatcherParameters complete = parameters;
@@ -233,7 +232,7 @@ private:
         return index ? index : indexFor(std::max(queries.cols, 1));
     }
 
-    //! Checked. The policy is that of the mode if it is THRESHOLD, else the given one.
+    //! Checks the arguments. The policy is that of THRESHOLD in this mode, else the given one.
     SearchInput inputFor(const PackedCodes& trains, const Mat& queries, InputArrayOfArrays masks,
             const PruningPolicy& policy) const
     {
@@ -254,8 +253,8 @@ private:
     }
 
     MatcherParameters parameters;
-    Ptr<PackedCodes> index;  //!< null while the width of codes is not known
-    Ptr<SearchCost> cost;    //!< shared with clones without train data, with which calls with two sets match
+    Ptr<PackedCodes> index;  //!< null while the width of codes is unknown
+    Ptr<SearchCost> cost;    //!< shared with clones without train data
 };
 
 }  // namespace

@@ -73,7 +73,7 @@ Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes)
 
 template <typename T> static std::vector<T> readList(const FileNode& node, const char* key)
 {
-    // In XML, a list of one is that number, and an empty list a node without anything.
+    // XML has a list of one as a number, and an empty list as an empty node.
     if (!node.isSeq() && node.size() > 0)
         return std::vector<T>(1, numberOf<T>(node, key));
     std::vector<T> values;

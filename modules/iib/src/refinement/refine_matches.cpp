@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../common/outputs.hpp"
-#include "propagation.hpp"
+#include "match_refiner.hpp"
 
 #include "opencv2/iib/refinement.hpp"
 

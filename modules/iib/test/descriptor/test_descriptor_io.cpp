@@ -89,6 +89,33 @@ TEST(IIB_IO, foreign_and_damaged_nodes_throw_and_change_nothing)
     EXPECT_THROW(Algorithm::loadFromString<IIB>("%YAML:1.0\n---\nBRISK:\n   threshold: 30\n"), cv::Exception);
 }
 
+TEST(IIB_IO, names_are_bytes_without_a_zero)
+{
+    expectError(Error::StsBadArg, "a zero byte", [] { IIB::create()->save(String("a\0b.yml", 7)); });
+}
+
+#ifdef __linux__
+TEST(IIB_IO, parameters_on_a_full_disk_keep_the_old_file)
+{
+    const TemporaryFolder folder;
+    const Ptr<Algorithm> savers[] = {IIB::createPreset(IIB::PRESET_S512), HierarchicalMatcher::create({2, 6}),
+            HessianDetector::create(), NormalizedDetector::create(ORB::create())};
+    for (const char* extension : {".yml", ".xml", ".json"})
+        for (const Ptr<Algorithm>& saver : savers)
+        {
+            const String name = folder.name + "/parameters" + extension;
+            saver->save(name);
+            const std::string before = readFile(name);
+            ASSERT_GT(before.size(), 60u);
+            {
+                const FullDisk full(50);
+                EXPECT_THROW(saver->save(name), cv::Exception) << name;
+            }
+            EXPECT_EQ(before, readFile(name));
+        }
+}
+#endif
+
 //! Every detector that a file can hold, none with its default parameters, but for SIFT, which tells none.
 std::vector<Ptr<Feature2D>> detectors()
 {

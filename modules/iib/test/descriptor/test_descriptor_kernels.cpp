@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/describe.hpp"
+#include "../support/textures.hpp"
 
 #include "../../src/descriptor/kernels/kernels.hpp"
 #include "../../src/descriptor/plan.hpp"

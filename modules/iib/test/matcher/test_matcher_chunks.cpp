@@ -6,7 +6,7 @@
 
 namespace opencv_test { namespace {
 
-// Queries and train codes are scanned in chunks; chunks of 8 and of 1 make small data cross their boundaries.
+// Small chunks, so that small data crosses their boundaries.
 typedef testing::TestWithParam<std::tuple<int, int>> IIB_Matcher_Chunks;  // size of a chunk, mode
 
 //! The k nearest, and the share of bits that were compared.

@@ -62,7 +62,7 @@ TEST(IIB_MatcherEdges, more_neighbours_asked_for_than_there_are)
     EXPECT_EQ(3u, matches[0].size());
 }
 
-// Codes too wide for a scan that keeps a distance and an index in 31 bits.
+// too wide for keys of 31 bits
 TEST(IIB_MatcherEdges, very_wide_codes)
 {
     MatcherOracle oracle;

@@ -8,9 +8,9 @@
 
 namespace cv { namespace iib {
 
-/* Mappings f(x) of the four cell means of a quad to bits (paper, "Binary Bit Formulation"). V is a vector of integers
- or of doubles that hold integers, with least, greatest, fourTimes and quarter; put(bit, b) takes what a comparison of V
- gives. No value exceeds four times the largest x. */
+/* Mappings f(x) of the four cell means of a quad to bits (paper, "Binary Bit Formulation"). V is a vector of integers, or of
+ doubles that hold integers, with least, greatest, fourTimes and quarter; put(bit, b) takes the result of a comparison. No
+ value exceeds four times the largest x. */
 
 //! Equation (1): x_i > mean(x).
 struct MeanMapping

@@ -6,7 +6,7 @@
 
 #include "../../common/vectors.simd.hpp"
 
-// What the descriptor's kernels alone need beside the common vocabulary, raw intrinsics among it.
+// Vector operations of the descriptor's kernels alone, with raw intrinsics.
 
 namespace cv { namespace iib {
 
@@ -22,15 +22,15 @@ template <typename V> inline V subtractWhereLess(const V& a, const V& b, const V
     return v_select(a < b, whole - v, v);
 }
 
-#if CV_AVX512_SKX  // the above turns its masks into vectors and back
+#if CV_AVX512_SKX  // v_select would convert masks to vectors and back
 inline v_int16 subtractWhereLess(const v_int16& a, const v_int16& b, const v_int16& whole, const v_int16& v)
 {
     return v_int16(_mm512_mask_sub_epi16(v.val, _mm512_cmplt_epi16_mask(a.val, b.val), whole.val, v.val));
 }
 #endif
 
-/* Interleaves four planes; out[0] gets the first pixels. Zipping is cheap only within 128 bits, so that wider vectors
- are first permuted. */
+/* Interleaves four planes; out[0] gets the first pixels. Zipping is cheap only within 128 bits, so wider vectors are permuted
+ first. */
 inline void interleaveFour(const v_uint16 planes[4], v_uint16 out[4])
 {
 #if CV_AVX512_SKX
@@ -131,8 +131,8 @@ inline void storeAlternately(unsigned* even, unsigned* odd, int lane, const v_in
 #endif
 }
 
-/* Four numbers, each repeated four times, as 16 / v_int32 lanes vectors. Not by way of memory, where what was stored in
- parts could not be read whole until all stores before it are done. */
+/* Repeats each of four numbers four times, in 16 / (lanes of v_int32) vectors. Not through memory: a vector load would wait for
+ the stores of its parts. */
 inline void repeatEachFourTimes(const v_int32x4& n, v_int32 out[])
 {
 #if CV_AVX512_SKX

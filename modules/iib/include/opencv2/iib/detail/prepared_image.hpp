@@ -13,12 +13,11 @@ namespace cv { namespace iib {
 
 //! @cond IGNORED
 
-//! An image as refineMatches and propagateMatches look at it, for who calls them with it more than once.
+//! A prepared image, for several calls of refineMatches and propagateMatches.
 struct CV_EXPORTS PreparedImage
 {
     PreparedImage() {}
-    /** @param image as in refineMatches.
-    @throws cv::Exception (StsBadArg) as refineMatches. */
+    //! @param image as in refineMatches. @throws cv::Exception (StsBadArg) as refineMatches.
     explicit PreparedImage(InputArray image);
 
     Mat pixels;  //!< CV_8U, locally normalized, a view of a larger matrix
