@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Methods beside each other, as programs use them.
+// Comparison of methods, as programs use them.
 
 #include "perf_precomp.hpp"
 
@@ -12,7 +12,7 @@
 
 namespace opencv_test { namespace {
 
-typedef perf::TestBaseWithParam<tuple<std::string, int>> IIB_Describe;  // what, size
+typedef perf::TestBaseWithParam<tuple<std::string, int>> IIB_Describe;  // method, size
 
 #ifdef IIB_PERF_XFEATURES2D
 // As IIB_Describe_hd.

@@ -41,7 +41,7 @@ const std::string DESCRIBED[] = {"ORB", "default", "granularity 5", "overlap", "
         "HAAR", "PAIRWISE", "PRESET_COMPACT", "PRESET_BALANCED", "PRESET_VIEWPOINT", "PRESET_UNIVERSAL",
         "PRESET_SMALL", EXTRA, "useOrientation"};
 
-typedef perf::TestBaseWithParam<tuple<std::string, int>> IIB_Describe;  // what, points
+typedef perf::TestBaseWithParam<tuple<std::string, int>> IIB_Describe;  // method, points
 
 PERF_TEST_P(IIB_Describe, hd, testing::Combine(testing::ValuesIn(DESCRIBED), testing::Values(1000, 5000)))
 {

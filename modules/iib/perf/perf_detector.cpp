@@ -6,7 +6,7 @@
 
 namespace opencv_test { namespace {
 
-//! Finds nothing: what is left of a NormalizedDetector is the normalization.
+//! Finds no keypoints, so that NormalizedDetector only normalizes.
 class FindsNothing : public Feature2D
 {
 public:

@@ -8,7 +8,7 @@
 
 namespace opencv_test { namespace {
 
-//! Codes of the same 10,000 points in a large image and in other light: darker, with a ramp of light and noise.
+//! Descriptors of 10,000 points in a large image, and in a darker one with a ramp and noise.
 struct Codes
 {
     Mat queries, trains;

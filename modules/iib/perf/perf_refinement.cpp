@@ -33,7 +33,7 @@ enum
 {
     REFINE,
     OPTICAL_FLOW,       //!< calcOpticalFlowPyrLK on the normalized images: the peer
-    DETECT_AND_COMPUTE  //!< of one of the images: what the time is compared with
+    DETECT_AND_COMPUTE  //!< of one image, for comparison
 };
 CV_ENUM(Step, REFINE, OPTICAL_FLOW, DETECT_AND_COMPUTE)
 

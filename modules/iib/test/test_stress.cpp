@@ -67,7 +67,7 @@ TEST(IIB_Stress, a_hundred_megapixels)
         }
 }
 
-//! Pages of this process; 0 where the system does not tell.
+//! Pages of this process; 0 if unknown.
 long residentPages()
 {
     long all = 0, resident = 0;

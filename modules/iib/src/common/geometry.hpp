@@ -36,7 +36,7 @@ struct Rotation
             angle += 360;
         const int quadrant = (int)(angle / 90) & 3;
         const double rest = angle - 90 * quadrant;
-        const bool upper = rest > 45;  // there the sine is the cosine of what is left to 90 degrees
+        const bool upper = rest > 45;  // sin(x) = cos(90 degrees - x)
         const double radians = (upper ? 90 - rest : rest) * (CV_PI / 180);
         const double small = radians * series(radians, 14), large = series(radians, 15);
         const double s = upper ? large : small, c = upper ? small : large;

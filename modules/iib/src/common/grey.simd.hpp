@@ -22,7 +22,7 @@ namespace {
 
 constexpr int BLUE = 3735, GREEN = 19235, RED = 9798, SHIFT = 15;  // as 15-bit fractions their sum is 1
 
-//! The grey of half a vector of pixels, whose values are below 2^15. @param redHalf red beside the 1 that rounds.
+//! The grey of half a vector of pixels below 2^15. @param redHalf pairs of red and 1; the 1 is for rounding.
 inline v_uint32 weighted(const v_int16& blueGreen, const v_int16& redHalf)
 {
     const v_int32 first = v_reinterpret_as_s32(vx_setall_u32((unsigned)GREEN << 16 | BLUE)),

@@ -16,7 +16,7 @@ template <typename Sum> class RowRing
 public:
     /** @param origin the first row, which is all zeros, and the first column behind the zeros at its left.
      @param count number of rows that stay readable, including the newest.
-     @param values in a row, of which the first `zeros` are always 0. What follows them begins on a cache line. */
+     @param values in a row; the first `zeros` are always 0, and the next one begins a cache line. */
     RowRing(Point origin, int count, size_t values, size_t zeros, ScratchMemory& memory) : newest(origin.y)
     {
         const size_t inLine = CACHE_LINE / sizeof(Sum);

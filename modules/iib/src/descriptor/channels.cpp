@@ -109,7 +109,7 @@ template <typename T> ImageRows<T> ChannelRows<T>::imageRows(int y)
     return {around[0], around[1], around[2]};
 }
 
-//! Fills what lies beside the image.
+//! Fills the pixels outside the image.
 template <typename T> void ChannelRows<T>::reflect(T* out) const
 {
     const int width = channels[0].map.cols, end = area.x + area.width;

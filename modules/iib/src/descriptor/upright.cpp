@@ -12,7 +12,8 @@ namespace {
 //! Whether sums down the columns are faster than integral images: for narrow cells and few keypoints.
 bool columnsAreFaster(const BatchJob& job, const std::vector<Channel>& channels, bool ofImage, double side)
 {
-    const double pixelsOfKeyPoint = 256;  // a keypoint's cells take longer by the time of so many pixels
+    const double pixelsOfKeyPoint =
+            256;  // the extra time for a keypoint's cells, in pixels of an integral image
     for (const Channel& c : channels)
         ofImage = ofImage && c.kind != 0;
     const int n = job.plan.cellsInRow();

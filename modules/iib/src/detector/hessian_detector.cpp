@@ -17,7 +17,7 @@ namespace cv { namespace iib {
 
 namespace {
 
-//! Means of `factor` x `factor` pixels, rounded; what is left at the right and below is left out.
+//! Rounded means of `factor` x `factor` pixels; incomplete squares at the right and bottom are dropped.
 template <typename T> Mat reduced(const Mat& grey, int factor)
 {
     Mat result(grey.rows / factor, grey.cols / factor, grey.type());

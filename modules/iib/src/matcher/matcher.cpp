@@ -5,6 +5,7 @@
 #include "../common/file_numbers.hpp"
 #include "../common/outputs.hpp"
 #include "index_file.hpp"
+#include "parameters.hpp"
 #include "search.hpp"
 
 namespace cv { namespace iib {

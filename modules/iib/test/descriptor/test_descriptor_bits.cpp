@@ -204,7 +204,7 @@ TEST(IIB_Property, linear_illumination_changes_no_bit)
     }
 }
 
-// The samples fall on the same pixels, and the gradient rotates exactly; where there is none, nothing rotates.
+// The samples fall on the same pixels, and the gradient rotates exactly; a zero gradient does not rotate.
 TEST(IIB_Property, rotated_with_the_image)
 {
     const Mat image = texture(SIZE, CV_8U, 7);

@@ -103,7 +103,7 @@ TEST(IIB_Errors, keypoints)
                 std::vector<Mat>(), {KeyPoint(1, 1, 9), KeyPoint(1, 1, 9), KeyPoint(1, 1, size)});
 }
 
-// Detectors leave them at anything; bits are those of any other angle.
+// Detectors may leave any angle; it does not change bits.
 TEST(IIB_Errors, angles_that_nobody_reads_may_be_anything)
 {
     const Mat image = texture(SIZE, CV_8U, 1);

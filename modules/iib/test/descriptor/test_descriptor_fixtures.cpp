@@ -31,7 +31,7 @@ Ptr<IIB> extractorFor(const Ptr<Feature2D>& detector)
             IIB::scaleFactorFor(detector), 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true);
 }
 
-//! What the fixture wants: an object up to OpenCV 4.6, what makes it in later versions.
+//! An argument of the fixture: an object up to OpenCV 4.6, a function that makes it in later versions.
 struct Given
 {
     Ptr<Feature2D> object;

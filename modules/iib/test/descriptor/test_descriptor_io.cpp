@@ -116,7 +116,7 @@ TEST(IIB_IO, parameters_on_a_full_disk_keep_the_old_file)
 }
 #endif
 
-//! Every detector that a file can hold, none with its default parameters, but for SIFT, which tells none.
+//! Every detector that a file can hold, with unusual parameters.
 std::vector<Ptr<Feature2D>> detectors()
 {
     const Ptr<ORB> orb = ORB::create(321, 1.3f, 5, 17, 1, 3, ORB::FAST_SCORE, 25, 9);
@@ -197,7 +197,7 @@ TEST(IIB_DetectorFile, an_unknown_detector_reads_its_parameters_or_is_an_error)
     }
 }
 
-// OpenCV's own detectors write nothing of themselves, or not all.
+// OpenCV's own detectors do not write all their parameters.
 TEST(IIB_DetectorFile, detectors_of_other_classes_are_set_before_reading)
 {
     for (const Ptr<Feature2D>& detector : {Ptr<Feature2D>(SIFT::create()),

@@ -21,7 +21,7 @@ template <typename T> std::vector<T> randomRow(Integers& random, int width, int 
     return row;
 }
 
-//! Channels added to other rows are what they are alone, and those rows.
+//! Channels that are added to other rows equal the sum of both.
 template <typename T> void checkAddedChannels(int limit)
 {
     Integers random(12);

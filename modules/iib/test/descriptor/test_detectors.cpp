@@ -13,7 +13,7 @@ struct DetectorCase
     const char* name;
     Ptr<Feature2D> (*create)();
     float scaleFactor;
-    int minCorrect;  //!< about two thirds of what was measured
+    int minCorrect;  //!< about two thirds of the measured number
 };
 
 template <typename T> Ptr<Feature2D> make() { return T::create(); }
@@ -155,7 +155,7 @@ std::vector<Ptr<Feature2D>> bothWith(const Ptr<Feature2D>& detector)
     return {IIB::createFor(detector), NormalizedDetector::create(detector)};
 }
 
-// ORB of OpenCV 4.6 scales the mask and keeps what is above 254.
+// ORB of OpenCV 4.6 scales the mask, and allows values above 254 only.
 TEST(IIB_Detector, any_number_in_a_mask_but_0_allows)
 {
     const Mat image = scene(Size(320, 240), 1);

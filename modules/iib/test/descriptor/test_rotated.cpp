@@ -132,7 +132,7 @@ TEST(IIB_Rotated, maps_that_begin_at_the_same_byte_are_not_the_same)
     }
 }
 
-// A grid that spans many pixels is read point by point: the bits are the same, whoever else is described.
+// A grid that spans many pixels is read point by point: the bits do not depend on other keypoints.
 TEST(IIB_Rotated, sparse_and_dense_grids_give_the_same_bits)
 {
     for (int depth : {CV_8U, CV_16U})

@@ -212,7 +212,7 @@ TEST(IIB_HessianDetector, large_images_are_searched_at_the_working_size)
     }
 }
 
-// The longer side alone would leave nothing of them.
+// Reduced by their longer side alone, they would vanish.
 TEST(IIB_HessianDetector, long_and_narrow_images_have_keypoints)
 {
     const Ptr<HessianDetector> detector = HessianDetector::create(0, 0, 5, 2.2f, 5, 64);

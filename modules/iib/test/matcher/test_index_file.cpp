@@ -138,7 +138,7 @@ TEST(IIB_IndexFile, full_disk_keeps_the_old_file)
     EXPECT_EQ(40, HierarchicalMatcher::loadIndex(name)->getTrainDescriptors()[0].rows);
     std::vector<String> files;
     cv::glob(folder.name + "/*", files);
-    EXPECT_EQ(std::vector<String>(1, name), files);  // nothing half-written is left
+    EXPECT_EQ(std::vector<String>(1, name), files);  // no temporary file is left
 }
 
 TEST(IIB_IndexFile, pipes_links_and_rights_stay_what_they_are)

@@ -9,7 +9,7 @@
 
 namespace opencv_test { namespace {
 
-//! A scene, and what propagateMatches() makes of some of its matches.
+//! A scene, and propagateMatches() of some of its matches.
 class IIB_Propagation : public testing::Test
 {
 protected:
@@ -29,7 +29,7 @@ protected:
         return propagate(matches, scene().images[1], scene().keypoints[0], scene().keypoints[1]);
     }
 
-    //! One match of so many.
+    //! Every n-th match.
     static std::vector<DMatch> some(int step)
     {
         std::vector<DMatch> matches;

@@ -28,7 +28,7 @@ struct Errors
         sigmas.push_back(inSigmas(error, covariance));
     }
 
-    //! The share that is inside of so many standard deviations.
+    //! The share of errors below this many standard deviations.
     double inside(double sigma) const
     {
         return std::count_if(sigmas.begin(), sigmas.end(), [&](double s) { return s < sigma; }) /

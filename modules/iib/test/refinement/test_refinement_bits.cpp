@@ -25,7 +25,7 @@ public:
 
     Result align(const Point2d& detected1, const Point2d& detected2) const
     {
-        // the patch lies on whole pixels; the point, beside its centre, moves with it
+        // the patch lies on whole pixels; the point moves with it
         const Vec2d point1(cvRound(detected1.x), cvRound(detected1.y)), point2(detected2.x, detected2.y);
         const Vec2d beside = Vec2d(detected1.x, detected1.y) - point1;
         const Result refused = {false, point2, -1};
@@ -34,7 +34,7 @@ public:
         const double contrast = deviation(fixed);
         if (!normalize(fixed))
             return refused;
-        // derivatives by x, y and a linear warp, less what changes of brightness and contrast explain
+        // derivatives by x, y and a linear warp, less the share of brightness and contrast
         std::vector<std::vector<double>> derivatives(6);
         for (int d = 0; d < 2; d++)
         {
@@ -180,7 +180,7 @@ TEST(IIB_RefinementOracle, agrees_with_the_documentation)
 }
 
 // The same bits on every machine and build. Images and keypoints are made of integers alone. A change of the algorithm
-// may change them; then the numbers are those that a failure prints.
+// may change them; a failure prints the new numbers.
 TEST(IIB_RefinementGolden, bits)
 {
     const Mat whole = texture(Size(330, 250), CV_8U, 11);

@@ -90,7 +90,7 @@ TEST_F(IIB_RefinementKernels, sample)
         PatchGrid grid = {Point(), Point(step() * 2 / 3, step() / 3), Point(step() / 3, step() * 2 / 3)};
         if (trial == 1)
             grid = {Point(), Point(131072, 0), Point(0, 131072)};
-        Point least, most;  // of what is added to the first place
+        Point least, most;  // offsets from the first sample
         for (int i : {0, PATCH - 1})
             for (int j : {0, PATCH - 1})
             {

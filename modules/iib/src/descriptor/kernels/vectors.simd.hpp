@@ -101,7 +101,7 @@ inline v_uint32 repeatLastFour(const v_uint32& v)
 #endif
 }
 
-//! The values that lie eight behind those of a vector. @param next the vector behind it.
+//! The values eight lanes further on. @param next the vector behind `values`.
 inline v_int16 eightBehind(const v_int16& values, const v_int16& next)
 {
 #if CV_AVX512_SKX
@@ -300,13 +300,13 @@ public:
     //! Whether each segment is summed whole.
     bool areComplete() const { return complete; }
 
-    //! The end of what is summed of segment i.
+    //! The end of the summed part of segment i.
     static int reached(const int* edges, int i)
     {
         return std::max(std::min(edges[i] + LONGEST, edges[0] + REACH), edges[i]);
     }
 
-    //! The sums, those of row + at[0] first, modulo 2^16.
+    //! The sums modulo 2^16, first those of row + at[0].
     v_uint16 operator()(const ushort* row, const size_t at[4]) const
     {
         const __m512i a = pick(0, row + at[0]), b = pick(1, row + at[1]), c = pick(2, row + at[2]),
@@ -320,7 +320,7 @@ public:
                 _mm512_mask_blend_epi64(0xcc, ab, cd), _mm512_shuffle_i64x2(rest, rest, 0xb1)));
     }
 
-    //! Stores those of segments 0, 2, 4, 6 to `even`, all rows' of one side by side, and the others to `odd`.
+    //! Stores the sums of segments 0, 2, 4, 6 to `even`, the others to `odd`, interleaved by rows.
     static void store(ushort* even, ushort* odd, const v_uint16& sums)
     {
         const __m512i bytes = _mm512_set_epi64(0x3f3e1f1e2f2e0f0e, 0x3b3a1b1a2b2a0b0a, 0x3736171627260706,

@@ -111,7 +111,7 @@ private:
     AlignedBuffer<int> trainKeys;
 };
 
-//! In rows of Q queries, what is left in smaller ones.
+//! Processes Q queries at a time, then the remainder in smaller groups.
 template <int Q, class S> void scanAll(S&& scanner, int queryCount)
 {
     int q = 0;

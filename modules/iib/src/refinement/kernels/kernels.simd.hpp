@@ -145,8 +145,8 @@ SquaredDifferences squareDifferences(const uchar* pixels, size_t step, ptrdiff_t
     for (int y = 2; y < TEMPLATE - 1; y += 4)
         for (int x = 1; x < TEMPLATE - 1; x += SHORTS)
         {
-            const auto pixelsAt = [&](ptrdiff_t beside) {
-                return v_reinterpret_as_s16(vx_load_expand(pixels + y * step + x + beside));
+            const auto pixelsAt = [&](ptrdiff_t offset) {
+                return v_reinterpret_as_s16(vx_load_expand(pixels + y * step + x + offset));
             };
             const v_int16 inside = vx_load(INSIDE + x - 1), centre = pixelsAt(0);
             const v_int16 before = (centre - pixelsAt(-next)) & inside;
