@@ -21,7 +21,7 @@ for each scale: `sigma`, `sigma` * sqrt(2), `sigma` * 2, ... The response is `si
 standard deviation. A keypoint is a pixel whose response is positive, at least `threshold`, and the largest among its
 neighbours in place (3 x 3) and in the scales before and after. Scales below 4 pixels are searched at the image's resolution,
 larger ones at half of it. Keypoints move exactly with a picture that moves by a multiple of 16 pixels, the step of the local
-normalization; otherwise to about a tenth of a pixel.
+normalization. For other shifts by whole pixels, most of the strong keypoints move to a tenth of a pixel.
 
 Fields of a keypoint:
 - `pt` is refined to fractions of a pixel by a quadratic fit of the response;

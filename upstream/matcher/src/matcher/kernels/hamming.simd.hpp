@@ -4,17 +4,20 @@
 
 #include "hamming.hpp"
 
-namespace cv { namespace iib {
+namespace cv {
+namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 const HammingKernels& hammingKernels();
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}}  // namespace cv::iib
+}  // namespace iib
+}  // namespace cv
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 #include "opencv2/core/hal/hal.hpp"
 
-namespace cv { namespace iib {
+namespace cv {
+namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
@@ -136,6 +139,7 @@ const HammingKernels& hammingKernels()
 }
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}}  // namespace cv::iib
+}  // namespace iib
+}  // namespace cv
 
 #endif
