@@ -8,7 +8,8 @@
 
 namespace opencv_test {
 
-//! Points and codes of two pictures by the recommended chain, and their matches: the demo's street at noon, by night from beside.
+//! Keypoints, descriptors and matches of two pictures by the recommended chain: the demo's street at noon, and by night from
+//! another place.
 struct PicturePair
 {
     explicit PicturePair(int points)

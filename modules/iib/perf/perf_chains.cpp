@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Methods beside each other, as programs use them.
+// Comparison of methods, as programs use them.
 
 #include "perf_precomp.hpp"
 
@@ -10,10 +10,9 @@
 #include "opencv2/xfeatures2d.hpp"
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
-typedef perf::TestBaseWithParam<tuple<std::string, int>> IIB_Describe;  // what, size
+typedef perf::TestBaseWithParam<tuple<std::string, int>> IIB_Describe;  // method, size
 
 #ifdef IIB_PERF_XFEATURES2D
 // As IIB_Describe_hd.
@@ -168,5 +167,4 @@ PERF_TEST_P(IIB_Chain, others,
     time();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -6,8 +6,7 @@
 
 #include <map>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const std::string EXTRA = "2 extra channels";
 
@@ -42,7 +41,7 @@ const std::string DESCRIBED[] = {"ORB", "default", "granularity 5", "overlap", "
         "HAAR", "PAIRWISE", "PRESET_COMPACT", "PRESET_BALANCED", "PRESET_VIEWPOINT", "PRESET_UNIVERSAL",
         "PRESET_SMALL", EXTRA, "useOrientation"};
 
-typedef perf::TestBaseWithParam<tuple<std::string, int>> IIB_Describe;  // what, points
+typedef perf::TestBaseWithParam<tuple<std::string, int>> IIB_Describe;  // method, points
 
 PERF_TEST_P(IIB_Describe, hd, testing::Combine(testing::ValuesIn(DESCRIBED), testing::Values(1000, 5000)))
 {
@@ -84,5 +83,4 @@ PERF_TEST_P(IIB_Describe, hd_on_two_threads,
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

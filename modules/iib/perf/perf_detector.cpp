@@ -4,10 +4,9 @@
 
 #include "perf_precomp.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
-//! Finds nothing: what is left of a NormalizedDetector is the normalization.
+//! Finds no keypoints, so that NormalizedDetector only normalizes.
 class FindsNothing : public Feature2D
 {
 public:
@@ -38,5 +37,4 @@ PERF_TEST_P(IIB_Detect, vga,
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

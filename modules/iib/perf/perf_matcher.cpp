@@ -6,10 +6,9 @@
 
 #include <numeric>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
-//! Codes of the same 10,000 points in a large image and in other light: darker, with a ramp of light and noise.
+//! Descriptors of 10,000 points in a large image, and in a darker one with a ramp and noise.
 struct Codes
 {
     Mat queries, trains;
@@ -162,5 +161,4 @@ PERF_TEST(IIB_MatchMany, ten_against_a_million)
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -8,8 +8,7 @@
 #include "opencv2/video/tracking.hpp"
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 #ifdef IIB_PERF_VIDEO
 //! Keeps the image that it is given: the normalized one, if NormalizedDetector asks.
@@ -34,7 +33,7 @@ enum
 {
     REFINE,
     OPTICAL_FLOW,       //!< calcOpticalFlowPyrLK on the normalized images: the peer
-    DETECT_AND_COMPUTE  //!< of one of the images: what the time is compared with
+    DETECT_AND_COMPUTE  //!< of one image, for comparison
 };
 CV_ENUM(Step, REFINE, OPTICAL_FLOW, DETECT_AND_COMPUTE)
 
@@ -108,5 +107,4 @@ PERF_TEST_P(IIB_Propagate, moved_and_by_night, testing::Values(1000, 2000, 4000)
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

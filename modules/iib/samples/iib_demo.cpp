@@ -111,7 +111,7 @@ try
         found = k ? found : right;
         const String score = names[k] + format(" %d of %d ", right, (int)matches.size()) + word;
         summary += (k ? ", " : "") + score;
-        // Orange and green, which colour-blind eyes tell apart; what is right lies above the rest.
+        // orange and green, which colour-blind people can distinguish; correct matches are drawn last
         const DrawMatchesFlags lines = DrawMatchesFlags::NOT_DRAW_SINGLE_POINTS;
         drawMatches(images[0], keypoints[0], images[1], keypoints[1], matches, rows[k], Scalar(40, 90, 255),
                 Scalar(), std::vector<char>(), lines);

@@ -15,11 +15,10 @@
 #include <immintrin.h>
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 #if defined(__x86_64__) || defined(_M_X64)
-//! Of those that the library has kernels for and OPENCV_CPU_DISABLE leaves.
+//! The widest one with kernels that OPENCV_CPU_DISABLE allows.
 String widestInstructionSet()
 {
     if (!checkHardwareSupport(CPU_SSE4_2) || !checkHardwareSupport(CPU_POPCNT))
@@ -47,7 +46,7 @@ TEST(IIB_InstructionSets, tables_from_SSE4_2_up_to_AVX512_SKX)
 #endif
 
 #ifdef IIB_UPPER_HALVES_ARE_FREED
-//! Whether the processor tells which parts of its registers are in use.
+//! Whether the processor reports which parts of registers are in use.
 bool tellsWhatIsInUse()
 {
     unsigned a, b, c, d;
@@ -100,5 +99,4 @@ TEST(IIB_InstructionSets, pins_work)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -11,8 +11,7 @@
 #include <fstream>
 #include <thread>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 Mat noise(Size size, int type)
 {
@@ -68,7 +67,7 @@ TEST(IIB_Stress, a_hundred_megapixels)
         }
 }
 
-//! Pages of this process; 0 where the system does not tell.
+//! Pages of this process; 0 if unknown.
 long residentPages()
 {
     long all = 0, resident = 0;
@@ -115,5 +114,4 @@ TEST(IIB_Stress, two_minutes_of_24_threads_that_share_all)
     EXPECT_LT(late, early * 1.05 + 4096) << "memory grows";
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

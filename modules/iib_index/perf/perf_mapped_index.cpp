@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "perf_precomp.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using cv::iib::MappedIndex;
 
 //! An index of a million random codes of 64 bytes, searched on one thread.
@@ -45,7 +44,6 @@ PERF_TEST(IIB_MappedIndex, ten_among_a_million)
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test
 
 CV_PERF_TEST_MAIN(iib_index)

@@ -4,8 +4,7 @@
 #include "code_segment.hpp"
 #include "opencv2/iib/detail/checked_file.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static const FileKind KIND = {"IIBCODES", 2, "a segment of MappedIndex"};
 static const size_t ALIGNMENT = 4096;
@@ -130,5 +129,4 @@ void CodeSegment::map()
     file = bytes;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include <mutex>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* Format 2 of a segment, a checked file:
 - u32: number of levels, each level's bytes, layout, number of blocks of PackedCodes per checksum;
@@ -44,5 +43,4 @@ private:
     Ptr<PackedCodes> packed;  // null until the file is checked
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -12,8 +12,7 @@
 
 #include <cstdio>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static const char *const MANIFEST = "manifest.iib", *const SEGMENT = "segment-%06llu.iib",
                          *const LOCK = "lock";
@@ -95,5 +94,4 @@ void removeUnfinished(const String& folder)
             removeFile(folder + "/" + name);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

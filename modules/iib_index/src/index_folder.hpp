@@ -3,8 +3,7 @@
 
 #include "opencv2/core.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* The files of an index: manifest.iib, segment-NNNNNN.iib, lock, and unfinished files, not yet renamed. */
 
@@ -19,5 +18,4 @@ void checkEmpty(const String& folder);
 //! Removes the unfinished files of an index and nothing else. Requires the lock.
 void removeUnfinished(const String& folder);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

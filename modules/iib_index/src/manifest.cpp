@@ -3,8 +3,7 @@
 #include "precomp.hpp"
 #include "manifest.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static const FileKind KIND = {"IIBSHARD", 1, "the manifest of a MappedIndex"};
 
@@ -62,5 +61,4 @@ Manifest readManifest(const String& filename)
     return manifest;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

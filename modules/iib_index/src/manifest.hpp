@@ -4,8 +4,7 @@
 #include "code_segment.hpp"
 #include "opencv2/iib/detail/checked_file.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* Format 1 of a manifest, a checked file:
 - u32: number of levels, each level's bytes;
@@ -26,5 +25,4 @@ CheckedWriter writeManifest(const String& filename, Manifest& manifest);
 
 Manifest readManifest(const String& filename);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -14,8 +14,7 @@
 #include <unistd.h>
 #endif
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 #ifdef _WIN32
 
@@ -61,5 +60,4 @@ MappedFile::~MappedFile() { munmap((void*)bytes, length); }
 
 #endif
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -3,8 +3,7 @@
 
 #include "opencv2/core.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! A file mapped into read-only memory, and read from the disk on access. The file must not be shortened meanwhile.
 class MappedFile
@@ -23,5 +22,4 @@ private:
     size_t length;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

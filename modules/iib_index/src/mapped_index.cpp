@@ -6,8 +6,7 @@
 #include <functional>
 #include <set>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -198,5 +197,4 @@ Ptr<MappedIndex> MappedIndex::open(const String& folder)
     return makePtr<MappedIndexImpl>(folder, readManifest(manifestOf(folder)));
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

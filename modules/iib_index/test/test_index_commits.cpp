@@ -14,8 +14,7 @@
 #include <unistd.h>
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using cv::iib::FileLock;
 
 struct IIB_MappedIndex_Commits : public IndexFixture
@@ -186,7 +185,7 @@ TEST_F(IIB_MappedIndex_Commits, a_lock_on_a_removed_file_does_not_count)
     waiting.join();
 }
 
-// The file is replaced between opening and locking; nobody holds its lock.
+// The file is replaced between open() and flock(); no process holds its lock.
 TEST_F(IIB_MappedIndex_Commits, an_output_that_another_process_replaces_is_not_in_use)
 {
     const String name = folder.name + "/output", next = folder.name + "/next";
@@ -251,5 +250,4 @@ TEST_F(IIB_MappedIndex_Commits, killed_writers_leave_whole_commits)
 }
 #endif
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -4,8 +4,7 @@
 
 #include "opencv2/iib/detail/checked_file.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 struct IIB_MappedIndex_Files : public IndexFixture
 {
@@ -270,5 +269,4 @@ TEST_F(IIB_MappedIndex_Files, names_of_folders_are_bytes_without_a_zero)
     expectError(Error::StsBadArg, "a zero byte", [&] { MappedIndex::open(zero); });
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -2,8 +2,7 @@
 
 #include "index_fixture.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 struct IIB_MappedIndex : public IndexFixture
 {
@@ -128,5 +127,4 @@ TEST_F(IIB_MappedIndex, other_instruction_sets_read_it)
     setUseOptimized(before);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -6,11 +6,10 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 constexpr int CACHE_LINE = 64;
-//! Values that kernels may read and write past a row, and before a PaddedRows row.
+//! Number of values that kernels may read and write past a row, and before a PaddedRows row.
 constexpr int ROW_PADDING = 64;
 
 //! n rounded up to fill whole cache lines of T.
@@ -19,8 +18,7 @@ template <typename T> inline size_t wholeLines(size_t n)
     return (n * sizeof(T) + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE / sizeof(T);
 }
 
-/** Values that begin on a cache line: the widest vectors then never cross one, which would halve their speed.
- Not initialized; moved but not copied. */
+/** Values that begin on a cache line, so that no vector crosses one. Not initialized; moved but not copied. */
 template <typename T> class AlignedBuffer
 {
 public:
@@ -36,7 +34,7 @@ public:
     AlignedBuffer(const AlignedBuffer&) = delete;
     AlignedBuffer& operator=(const AlignedBuffer&) = delete;
 
-    //! Room for at least n values; what was there is lost if that is more than before.
+    //! Room for at least n values; the content is lost if it grows.
     void allocate(size_t n)
     {
         if (n <= capacity)
@@ -58,11 +56,11 @@ private:
     size_t capacity;
 };
 
-//! Memory that one thread uses again and again, for values of any type. What was there is lost with each use.
+//! Memory that a thread reuses for values of any type. Each use loses the content.
 class ScratchMemory
 {
 public:
-    //! Room for n values, not initialized, from the beginning of a cache line on.
+    //! Room for n values on a cache line, not initialized.
     template <typename T> T* get(size_t n)
     {
         bytes.allocate(n * sizeof(T));
@@ -73,8 +71,8 @@ private:
     AlignedBuffer<uchar> bytes;
 };
 
-/** Rows of an image as kernels take them: each begins on a cache line, with room for `reach` values and ROW_PADDING
-more on either side. They may be fewer than the image has: then the last ones, of those made from top to bottom. */
+/** Rows of an image for kernels: each begins on a cache line, with room for reach + ROW_PADDING values on either side.
+With fewer rows than the image has, they are a ring: row y replaces row y - size.height. */
 template <typename T> class PaddedRows
 {
 public:
@@ -106,7 +104,7 @@ public:
     Size size;
 
 private:
-    //! Without a division: exact where the product of y and the number of rows is below 2^32.
+    //! y modulo size.height without a division: exact while their product is below 2^32.
     int place(int y) const { return y < size.height ? y : y - size.height * (int)(y * reciprocal >> 32); }
 
     size_t padding, step;
@@ -114,5 +112,4 @@ private:
     AlignedBuffer<T> values;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

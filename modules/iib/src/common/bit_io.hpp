@@ -8,17 +8,16 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Stores the lowest bytes of a word, the lowest first.
 inline void storeBytes(uint64 word, int bytes, uchar* out)
 {
-    memcpy(out, &word, bytes);  // of a little-endian machine, as no other is built for
+    memcpy(out, &word, bytes);  // all supported machines are little-endian
 }
 
-/** Appends bits, the lowest bit of the lowest byte first. Keeps those of the last, unfinished word back:
- a BitWriter writes them when it ends. */
+/** Appends bits, the lowest bit of the lowest byte first. The last, unfinished word stays pending until the end of the
+ BitWriter. */
 class BitAppender
 {
 public:
@@ -73,5 +72,4 @@ public:
     BitWriter& operator=(const BitWriter&) = delete;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

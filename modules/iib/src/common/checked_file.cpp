@@ -7,8 +7,7 @@
 
 #include <cstring>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static const size_t LETTERS = 8;
 
@@ -31,7 +30,7 @@ void CheckedWriter::unchecked(const void* data, size_t size)
     written += size;
 }
 
-// Files are little-endian, as are all machines that this is built for.
+// Files are little-endian, as all supported machines are.
 void CheckedWriter::number(uint64 value, int size) { bytes(&value, size); }
 
 void CheckedWriter::real(float value) { bytes(&value, sizeof(value)); }
@@ -42,10 +41,6 @@ uint64 CheckedWriter::seal()
     number(value, 8);
     return value;
 }
-
-void CheckedWriter::finish() { file->finish(); }
-
-void CheckedWriter::commit() { file->commit(); }
 
 CheckedReader::CheckedReader(const String& filename, const FileKind& kind)
     : name(checkedName(filename)), kindName(kind.name), whole(0), rest(0), format(0)
@@ -72,7 +67,7 @@ uint64 CheckedReader::seal()
 {
     const uint64 expected = hash.value();
     if (number(8) != expected)
-        fail("it is altered: its checksum does not fit");
+        fail("it is altered: its checksum is wrong");
     return expected;
 }
 
@@ -85,7 +80,7 @@ void CheckedReader::expect(uint64 count, uint64 size) const
 void CheckedReader::expectEnd() const
 {
     if (rest != 0)
-        fail("it is altered: there is more behind its end");
+        fail("it is altered: there is data beyond its end");
 }
 
 void CheckedReader::bytes(void* data, size_t size)
@@ -117,5 +112,4 @@ void CheckedReader::fail(const String& why) const
     CV_Error(Error::StsParseError, name + " cannot be read as " + kindName + ": " + why);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

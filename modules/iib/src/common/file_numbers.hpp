@@ -5,12 +5,10 @@
 #pragma once
 
 #include "../precomp.hpp"
-#include "opencv2/iib/detail/files.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-//! Throws "NAME is VALUE; it must be WHAT" unless that holds.
+//! Throws "NAME is VALUE; it must be WHAT" unless the condition holds.
 inline void require(
         bool holds, const char* name, double value, const char* what, Error::Code code = Error::StsOutOfRange)
 {
@@ -20,7 +18,7 @@ inline void require(
                         name, value, what));
 }
 
-//! What a node is, for errors.
+//! A node's content, for errors.
 inline String describeNode(const FileNode& node)
 {
     if (node.empty())
@@ -37,11 +35,9 @@ inline String describeNode(const FileNode& node)
     return "a map of: " + keys;
 }
 
-/** The number of a node, which must be one of type T, else this throws StsParseError with the name.
+/** The number of a node; throws StsParseError with the name if it is no number of type T.
 
-Where OpenCV's FileStorage has no 64-bit numbers, as in 4.6, it cuts whole numbers of a file to 32 bits, and nothing can
-tell that afterwards.
- */
+FileStorage of OpenCV 4.6 has no 64-bit numbers: it silently cuts larger whole numbers to 32 bits. */
 template <typename T> T numberOf(const FileNode& node, const String& name)
 {
     typedef std::numeric_limits<T> Limits;
@@ -54,7 +50,7 @@ template <typename T> T numberOf(const FileNode& node, const String& name)
     return (T)number;
 }
 
-//! Reads the number of this name. One that is missing keeps its value.
+//! Reads the number of this name; keeps the value if it is missing.
 template <typename T> void readNumber(const FileNode& node, const char* name, T& value)
 {
     const FileNode number = node[name];
@@ -62,7 +58,7 @@ template <typename T> void readNumber(const FileNode& node, const char* name, T&
         value = numberOf<T>(number, name);
 }
 
-//! The node that write() made under a name, or `node` if it is that one itself: users give either.
+//! The node that write() made under a name, or `node` itself: users pass either.
 inline FileNode nodeNamed(const FileNode& node, const char* name)
 {
     const FileNode inner = node.isMap() ? node[name] : FileNode();
@@ -82,23 +78,4 @@ inline FileNode nodeOfFormat1(const FileNode& node, const char* name)
     return fn;
 }
 
-/** Algorithm::save() that fails loudly, where OpenCV's own leaves half a file on a full disk. @param name of the node
- around what write() writes; empty: none, for names that no node may have. */
-inline void saveWhole(const Algorithm& algorithm, const String& filename, const String& name = String())
-{
-    if (filename.size() > 3 && filename.compare(filename.size() - 3, 3, ".gz") == 0)
-        CV_Error(
-                Error::StsBadArg, "Cannot write " + filename +
-                                          ": parameters are not packed; end its name in .yml, .xml or .json");
-    FileStorage fs(filename, FileStorage::WRITE + FileStorage::MEMORY);
-    CV_Assert(fs.isOpened());
-    if (!name.empty())
-        fs << name << "{";
-    algorithm.write(fs);
-    if (!name.empty())
-        fs << "}";
-    writeText(filename, fs.releaseAndGetString());
-}
-
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

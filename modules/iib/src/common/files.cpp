@@ -23,8 +23,7 @@
 #include <unistd.h>
 #endif
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 #ifdef _WIN32
 std::wstring systemName(const String& name)
@@ -42,7 +41,7 @@ std::wstring systemName(const String& name)
 
 namespace {
 
-//! What is at a file's name.
+//! What a file's name leads to.
 struct Present
 {
     bool any, file;
@@ -66,7 +65,7 @@ std::FILE* create(const String& name)
 void remove(const String& name) { _wremove(systemName(name).c_str()); }
 bool flushToDisk(std::FILE* file) { return std::fflush(file) == 0 && _commit(_fileno(file)) == 0; }
 
-// Tries again what is refused for a moment: who reads a file keeps it from being replaced, and vice versa.
+// Repeats an action that Windows refuses while another process has the file open.
 template <typename Action> bool patiently(int seconds, Action action)
 {
     for (int left = 100 * seconds; !action(); left--)
@@ -88,7 +87,7 @@ bool replace(const String& from, const String& to, const String&)
     };
     if (patiently(1, move))
         return true;
-    // Readers in turn leave moments; missing rights, which give the same error, are not waited for.
+    // Wait longer for readers that follow each other, but not for missing rights, which give the same error.
     const HANDLE file = CreateFileW(target.c_str(), GENERIC_WRITE | DELETE, 0, 0, OPEN_EXISTING, 0, 0);
     if (file != INVALID_HANDLE_VALUE)
         CloseHandle(file);
@@ -142,7 +141,7 @@ bool replace(const String& from, const String& to, const String& folder)
 }
 #endif
 
-//! What a part's name begins with: with a name of 255 bytes, the system has no room for more.
+//! The begin of a temporary file's name, short enough for the system's limit of 255 bytes.
 String beginOf(const String& file)
 {
     return file.size() - (file.rfind('/') + 1) > 200 ? file.substr(0, file.rfind('/') + 1) + "iib" : file;
@@ -181,7 +180,7 @@ WholeFile::WholeFile(const String& filename)
     if (old.any && !old.file)
         CV_Error(Error::StsError, "Cannot write " + name + ": it is a folder, a device or a pipe");
     static std::atomic<int> counter(0);
-    for (int attempt = 0; attempt < 100 && !stream; attempt++)  // another's name in use
+    for (int attempt = 0; attempt < 100 && !stream; attempt++)  // the name may be in use
     {
         temporary = partOf(target, processId(), counter++);
         stream = create(temporary);
@@ -194,7 +193,7 @@ WholeFile::WholeFile(const String& filename)
 
 void WholeFile::write(const void* data, size_t size)
 {
-    if (size > 0)  // fwrite takes no null pointer, not even for nothing
+    if (size > 0)  // fwrite does not take a null pointer, even for 0 bytes
         std::fwrite(data, 1, size, stream);
 }
 
@@ -218,7 +217,7 @@ void WholeFile::finish()
 
 void WholeFile::commit()
 {
-    // Before anything is done, since memory may lack.
+    // first, since allocating may throw
     const size_t slash = target.rfind('/');
     const String folder = slash == String::npos ? String(".") : target.substr(0, slash + 1);
     finish();
@@ -241,7 +240,6 @@ bool isPartOf(const String& file, const String& name)
 {
     const String begin = beginOf(file);
     int process = 0, number = 0;
-    // Formatted again, the numbers have to give the same name.
     return name.compare(0, begin.size(), begin) == 0 &&
            std::sscanf(name.c_str() + begin.size(), ".%d-%d.tmp", &process, &number) == 2 &&
            name == partOf(file, process, number);
@@ -256,7 +254,7 @@ void writeText(const String& filename, const String& text)
 
 void openToRead(std::filebuf& file, const String& name)
 {
-    if (presentAt(name).file)  // a pipe would not open before somebody writes to it
+    if (presentAt(name).file)  // opening a pipe would wait for a writer
         open(file, name);
 }
 
@@ -264,7 +262,7 @@ void openToRead(std::filebuf& file, const String& name)
 FileLock::FileLock(const String& name, What what)
 {
     const bool waits = what == LOCK_FILE;
-    const String& path = waits ? name : name + ".lock";  // of a folder, or a file that others open
+    const String& path = waits ? name : name + ".lock";
     const Present there = presentAt(name);
     if (what == OUTPUT_FOLDER && (!there.any || there.file))
         CV_Error(Error::StsError, "Cannot write " + name + ": it is no folder");
@@ -290,7 +288,7 @@ FileLock::FileLock(const String& name, What what)
     const bool waits = what == LOCK_FILE;
     const int flags = O_CLOEXEC | (waits ? 0 : O_NOFOLLOW) |
                       (what == OUTPUT_FOLDER ? O_RDONLY | O_DIRECTORY : O_RDWR | O_CREAT);
-    // Again where another process removed or replaced the file after it was opened here, and only then unlocked it.
+    // Repeated if another process removed or replaced the file between open() and flock().
     for (int times = 0; times < 100; times++)
     {
         file = ::open(name.c_str(), flags, 0666);
@@ -317,17 +315,15 @@ FileLock::FileLock(const String& name, What what)
         if (!gone)
             CV_Error(Error::StsError, "Cannot write " + name + ": check the folder and its rights");
     }
-    CV_Error(
-            Error::StsError, "Other processes replace " + name + " all the time: wait until they have ended");
+    CV_Error(Error::StsError, "Other processes keep replacing " + name + ": wait until they have ended");
 }
 
 FileLock::~FileLock()
 {
-    // closing is not enough: a process that was forked meanwhile holds the same open file
+    // close() alone is not enough if the process was forked: the child has the same open file
     flock(file, LOCK_UN);
     close(file);
 }
 #endif
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,25 +6,24 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-//! The place in [0, size) of a pixel that BORDER_REFLECT_101 brings there at the first reflection or the second.
+//! The place in [0, size) of a pixel after up to two reflections by BORDER_REFLECT_101.
 inline int reflected(int place, int size)
 {
     const int folded = std::abs(place);
     return std::max(std::min(folded, 2 * (size - 1) - folded), 0);
 }
 
-//! Pixels of a row (or column) of `size` pixels that hold all those of [begin, end), some of which may be reflected.
+//! The pixels of a row (or column) of `size` pixels that [begin, end) reads, some of them by reflection.
 inline Range reflectedRange(int begin, int end, int size)
 {
     const int first = std::min(begin, 2 * size - 1 - end), last = std::max(end, 1 - begin);
     return Range(std::max(first, 0), std::min(last, size));
 }
 
-/** A keypoint's angle. The functions of the C library differ in the last place from machine to machine, and with it
- samples and bits: here, only doubles are added and multiplied, in one order, after an exact reduction. */
+/** Cosine and sine of a keypoint's angle, the same on every machine. Functions of the C library differ in the last place,
+ which would change bits. */
 struct Rotation
 {
     double cosine, sine;  //!< error below 1e-15
@@ -37,7 +36,7 @@ struct Rotation
             angle += 360;
         const int quadrant = (int)(angle / 90) & 3;
         const double rest = angle - 90 * quadrant;
-        const bool upper = rest > 45;  // there the sine is the cosine of what is left to 90 degrees
+        const bool upper = rest > 45;  // sin(x) = cos(90 degrees - x)
         const double radians = (upper ? 90 - rest : rest) * (CV_PI / 180);
         const double small = radians * series(radians, 14), large = series(radians, 15);
         const double s = upper ? large : small, c = upper ? small : large;
@@ -107,5 +106,4 @@ private:
     std::vector<double> counts, sums;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,8 +7,7 @@
 #include "grey.simd.hpp"
 #include "common/grey.simd_declarations.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static void rowsOf(const Mat& image, Mat& grey, const Range& rows)
 {
@@ -24,5 +23,4 @@ Mat greyOf(const Mat& image)
     return grey;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -4,20 +4,17 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 void greyRows(const Mat& image, Mat& grey, const Range& rows);
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 #include "vectors.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -25,7 +22,7 @@ namespace {
 
 constexpr int BLUE = 3735, GREEN = 19235, RED = 9798, SHIFT = 15;  // as 15-bit fractions their sum is 1
 
-//! The grey of half a vector of pixels, whose values are below 2^15. @param redHalf red beside the 1 that rounds.
+//! The grey of half a vector of pixels below 2^15. @param redHalf pairs of red and 1; the 1 is for rounding.
 inline v_uint32 weighted(const v_int16& blueGreen, const v_int16& redHalf)
 {
     const v_int32 first = v_reinterpret_as_s32(vx_setall_u32((unsigned)GREEN << 16 | BLUE)),
@@ -86,7 +83,7 @@ template <int CHANNELS, typename T> void greyRow(const T* in, T* out, int width)
     for (int x = 0; x <= width - N; x += N)
         vector(x);
     if (width >= N)
-        return vector(width - N);  // may overlap the one before
+        return vector(width - N);  // may overlap the vector before
     for (int x = 0; x < width; x++, in += CHANNELS)
         out[x] = (T)(((unsigned)in[0] * BLUE + (unsigned)in[1] * GREEN + (unsigned)in[2] * RED +
                              (1 << (SHIFT - 1))) >>
@@ -109,7 +106,6 @@ void greyRows(const Mat& image, Mat& grey, const Range& rows)
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

@@ -4,8 +4,7 @@
 
 #include "image_input.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 void checkPixels(const Mat& m, const String& what)
 {
@@ -16,7 +15,7 @@ void checkPixels(const Mat& m, const String& what)
     {
         const float* const row = m.ptr<float>(y);
         const int values = m.cols * m.channels();
-        int wrong = 0;  // a sum, of which the compiler makes vectors
+        int wrong = 0;  // a sum, which compilers vectorize
         for (int i = 0; i < values; i++)
             wrong += !(std::abs(row[i]) <= FLT_MAX);
         if (wrong == 0)
@@ -38,7 +37,7 @@ void checkImage(const Mat& image)
     checkPixels(image, "the image");
 }
 
-//! Of float pixels, in one fixed order: cvtColor's code differs between instruction sets.
+//! Grey of float pixels, in one fixed order: cvtColor's differs between instruction sets.
 static double grey(const float* pixel, int channels)
 {
     return channels == 1 ? pixel[0] : 0.114 * pixel[0] + 0.587 * pixel[1] + 0.299 * pixel[2];
@@ -61,7 +60,7 @@ static Mat quantized(const Mat& image)
     for (int y = 0; y < result.rows; y++)
     {
         const float* src = image.ptr<float>(y);
-        // a quotient, not a product with the inverse: equal ratios then round alike
+        // a quotient, not a product with the inverse, so that equal ratios round alike
         for (int x = 0; x < result.cols; x++)
             result.at<ushort>(y, x) = (ushort)cvRound((grey(src + x * cn, cn) - lo) / range * 65535);
     }
@@ -82,7 +81,6 @@ void checkKeyPoints(const std::vector<KeyPoint>& keypoints, bool withAngles)
     for (size_t i = 0; i < keypoints.size(); i++)
     {
         const KeyPoint& kp = keypoints[i];
-        // written so that NaN fails
         const float angle = withAngles ? kp.angle : 0;
         if (!(std::abs(kp.pt.x) <= FLT_MAX && std::abs(kp.pt.y) <= FLT_MAX && std::abs(angle) <= FLT_MAX &&
                     kp.size > 0 && kp.size <= FLT_MAX))
@@ -137,5 +135,4 @@ Mat maskFor(InputArray maskArray, Size imageSize)
     return mask != 0;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

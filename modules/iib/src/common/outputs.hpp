@@ -6,19 +6,17 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-/** Writes rows of numbers to a matrix, or to what has a type or a size of its own: numbers of another depth, or elements
- that are rows each, as those of std::vector<Point2f> and std::vector<Vec3d>. */
+/** Writes rows of numbers to a matrix, converted to its type if that is fixed, or to a vector whose elements are rows, such
+ as std::vector<Point2f>. */
 inline void writeRows(const Mat& rows, OutputArray out)
 {
     if (!out.needed())
         return;
     const int type = out.fixedType() ? out.type() : rows.type(), channels = CV_MAT_CN(type);
     (channels == rows.cols ? rows.reshape(channels) : rows)
-            .convertTo(out, type);  // of no rows OpenCV 4.14 creates this type
+            .convertTo(out, type);  // OpenCV 4.14 needs the type for an empty matrix
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

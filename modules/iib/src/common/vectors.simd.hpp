@@ -8,12 +8,10 @@
 
 #include <cstring>
 
-// The vocabulary of all vector code: OpenCV's universal intrinsics, and what they lack, under names of its own. Raw intrinsics
-// stand nowhere else. Each is chosen by instruction set, never by the width of vectors, which different architectures share;
-// where there is no portable form, a macro says whether it exists.
+// The vocabulary of all vector code: OpenCV's universal intrinsics, and additions with raw intrinsics. Additions are chosen by
+// instruction set, never by the width of vectors. If an addition has no portable form, a macro says whether it exists.
 
-// Vectors of unknown length (RVV) cannot be members or elements of arrays, and only x86 has its own primitives
-// for wide vectors: elsewhere a vector has 128 bits.
+// Vectors of unknown length (RVV) cannot be members or elements of arrays. Except on x86, vectors have 128 bits.
 #if defined __riscv_vector
 #define CV_FORCE_SIMD128_CPP
 #elif defined __loongarch_asx
@@ -45,8 +43,8 @@
 #else
 #define IIB_COMPRESSES_LANES 0
 #endif
-//! Whether v_popcount(v_uint32) is one instruction; elsewhere counting bytes is cheaper. Whether SegmentSums exists: where one
-//! instruction picks bytes out of a whole vector.
+//! Whether v_popcount(v_uint32) is one instruction; if not, counting bytes is cheaper. And whether SegmentSums exists, which
+//! needs an instruction that picks bytes out of a whole vector.
 #if CV_AVX512_ICL && IIB_NATIVE_VECTORS
 #define IIB_COUNTS_LANES 1
 #define IIB_SUMS_SEGMENTS 1
@@ -55,15 +53,14 @@
 #define IIB_SUMS_SEGMENTS 0
 #endif
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-/* What all versions from 4.6 on have: vectors with operators, and the number of their lanes. Operators went from OpenCV with
- 4.11 (for NEON earlier), in favour of functions; where there are both, OpenCV's own operator is the better match. */
+/* Operators and lane numbers for all versions from 4.6 on. OpenCV 4.11 (for NEON earlier) replaced operators by functions. If
+ both exist, overload resolution prefers OpenCV's operator. */
 template <typename V> struct VTraits
 {
 #if CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR < 7
@@ -122,8 +119,8 @@ constexpr int SHORTS = VTraits<v_int16>::max_nlanes, INTS = VTraits<v_int32>::ma
 inline v_int16 absolute(const v_int16& v) { return v_reinterpret_as_s16(v_abs(v)); }
 inline v_int32 absolute(const v_int32& v) { return v_reinterpret_as_s32(v_abs(v)); }
 
-/* Quotients, roots and nearest integers as IEEE 754 says. On ARMv7 the vectors' first two are estimates, and v_round
- rounds halves up; scalars are exact there. */
+/* Quotients, roots and nearest integers by IEEE 754. On ARMv7, vector quotients and roots are estimates, and v_round rounds
+ halves up, so scalars are used. */
 #if CV_NEON && !defined __aarch64__ && !defined _M_ARM64
 inline v_float32 exactQuotient(const v_float32& a, const v_float32& b)
 {
@@ -198,8 +195,8 @@ template <int SCALE> inline v_int32x16 gatherWords(const void* base, const v_int
 
 //! A bit for each lane, all of whose bits are equal.
 template <typename V> inline unsigned laneBits(const V& lanes) { return (unsigned)v_signmask(lanes); }
-inline unsigned laneBits(bool lane) { return lane; }  // where no vectors of doubles are (ARMv7, WebAssembly)
-#if CV_AVX512_SKX  // of a mask of eight lanes that it keeps in memory, GCC 12 may store one byte and read four
+inline unsigned laneBits(bool lane) { return lane; }  // without vectors of doubles (ARMv7, WebAssembly)
+#if CV_AVX512_SKX  // v_signmask: GCC 12 may store one byte of a mask of eight lanes and read four
 inline unsigned laneBits(const v_float64& lanes)
 {
     return (unsigned)_mm_movemask_epi8(_mm512_cvtepi64_epi8(_mm512_castpd_si512(lanes.val)));
@@ -210,7 +207,7 @@ inline unsigned laneBits(const v_float64& lanes)
 template <typename V> inline unsigned greaterMask(const V& a, const V& b) { return laneBits(a > b); }
 template <typename V> inline unsigned greaterEqualMask(const V& a, const V& b) { return laneBits(a >= b); }
 template <typename V> inline unsigned equalMask(const V& a, const V& b) { return laneBits(a == b); }
-#if CV_AVX512_SKX  // the above turns its masks into vectors and back
+#if CV_AVX512_SKX  // the functions above convert masks to vectors and back
 inline unsigned greaterMask(const v_int32& a, const v_int32& b)
 {
     return _mm512_cmpgt_epi32_mask(a.val, b.val);
@@ -229,7 +226,7 @@ inline unsigned greaterMask(const v_int16& a, const v_int16& b)
 }
 #endif
 
-/* Doubles, or one of them where there are no such vectors (ARMv7, WebAssembly). */
+/* Vectors of doubles, or scalars (ARMv7, WebAssembly). */
 #if CV_SIMD_64F
 typedef v_float64 v_doubles;
 
@@ -264,8 +261,8 @@ inline int countBits(uint64 word)
 #endif
 }
 
-//! A full adder of parity, `first` and `second`, given by x = parity ^ first and a ^ b = first ^ second: returns the
-//! carry and makes parity the low bit of the sum.
+//! A full adder of parity, `first` and `second`, which are given by x = parity ^ first and a ^ b = first ^ second. Returns the
+//! carry; parity becomes the sum's low bit.
 inline v_uint32 fullAdder(v_uint32& parity, const v_uint32& x, const v_uint32& a, const v_uint32& b)
 {
     const v_uint32 before = parity;
@@ -281,7 +278,7 @@ inline v_uint32 fullAdder(v_uint32& parity, const v_uint32& x, const v_uint32& a
 }
 
 #if IIB_LOOKS_UP_BYTES
-//! Picks bytes out of tables of 16, a table for each 16 bytes of the vector; an index is 0 to 15.
+//! Looks bytes up in tables of 16, one for each 16 bytes of the vector; an index is 0 to 15.
 inline v_uint8 lookUp(const v_uint8& table, const v_uint8& index)
 {
 #if CV_AVX512_SKX
@@ -310,7 +307,7 @@ inline v_int32 compressed(const v_int32& values, int lanes)
 }
 #endif
 
-//! GCC 12 leaves the upper halves of registers in use; code without AVX that follows, also a user's, runs at half the speed.
+//! GCC 12 leaves the upper halves of registers dirty, which halves the speed of SSE code that follows, also a user's.
 inline void freeUpperHalves()
 {
 #if CV_AVX512_SKX
@@ -322,5 +319,4 @@ inline void freeUpperHalves()
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

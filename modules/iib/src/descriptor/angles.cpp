@@ -10,8 +10,7 @@
 
 #include "grid_pixels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -19,7 +18,7 @@ enum
 {
     CELLS = 32,         //!< in a row of the grid over a region whose gradients vote for its angle
     SUB = 2,            //!< a cell has SUB x SUB points
-    INNER = CELLS - 2,  // those with neighbours on all sides
+    INNER = CELLS - 2,  // cells with neighbours on all sides
     VOTES = INNER * INNER,
     BINS = 64,
     STEPS_PER_BIN = ORIENTATION_STEPS / BINS,
@@ -88,7 +87,7 @@ int peakOf(const int64 bins[BINS], int rank)
 
 /** A peak of the smoothed histogram of the directions of gradients (Sobel 3x3) between cells.
 @param pixels, index of the points of CELLS x CELLS cells, as for mapSums; the fourth value of a pixel is its intensity.
-@param rank 0 for the highest peak, 1 for the next, and so on; the lowest if there are not so many.
+@param rank 0 for the highest peak, 1 for the next, and so on; the lowest if there are fewer.
 @return degrees, 0 <= angle < 360, clockwise in the image; 0 if there is no peak. */
 template <typename T>
 float prevailingAngle(const DescriptorKernels& kernels, const T* pixels, const int* index, int rank)
@@ -169,5 +168,4 @@ void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<K
     });
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,16 +7,14 @@
 #include "plan.hpp"
 #include "regions.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-/** Sets the angles of regions as ORIENTATION_GRADIENT: the direction that prevails among the gradients between 32 x 32
- cells, each of which counts by its magnitude and by a Gaussian of half the region's radius around the centre.
+/** Sets the angles of regions for ORIENTATION_GRADIENT: the peak of a histogram of gradient directions between 32 x 32
+ cells, weighted by magnitude and by a Gaussian of half the region's radius.
 @param grey CV_8U or CV_16U.
-@param keypoints of the regions: of those with the same position and size, the second gets the second highest peak of
-the directions, and so on. */
+@param keypoints of the regions: of several with the same position and size, the second gets the second highest peak, and
+so on. */
 void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<KeyPoint>& keypoints,
         std::vector<SupportRegion>& regions);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

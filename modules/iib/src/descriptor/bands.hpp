@@ -6,23 +6,21 @@
 
 #include "channels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-/* Bands: the last rows of what is made of an image's channels, as much as fits the cache. */
+/* Bands hold the last rows of something computed from the channels, so that they stay in the cache. */
 
-/** Rows of sums that are made one after another, each from the one above it, in a ring that keeps the last of them. The
- ring stays in the cache while the keypoints that it holds are described. */
+//! Rows of sums, each computed from the row above it, in a ring that keeps the last ones.
 template <typename Sum> class RowRing
 {
 public:
     /** @param origin the first row, which is all zeros, and the first column behind the zeros at its left.
-     @param count rows that a reader looks at, the newest included.
-     @param values in a row, of which the first `zeros` are always 0. What follows them begins on a cache line. */
+     @param count number of rows that stay readable, including the newest.
+     @param values in a row; the first `zeros` are always 0, and the next one begins a cache line. */
     RowRing(Point origin, int count, size_t values, size_t zeros, ScratchMemory& memory) : newest(origin.y)
     {
         const size_t inLine = CACHE_LINE / sizeof(Sum);
-        // An odd number of cache lines: with an even one the corners of a column would share few cache sets.
+        // an odd number of cache lines, so that the corners of a column use many cache sets
         view.step = ((values + inLine - 1) / inLine | 1) * inLine;
         view.count = count;
         view.origin = origin;
@@ -42,7 +40,7 @@ public:
 
     const RingRows<Sum>& rows() const { return view; }
     const Sum* row(int y) const { return begin + (size_t)((y - view.origin.y) % view.count) * view.step; }
-    //! The first row at hand.
+    //! The oldest row in the ring.
     int oldest() const { return std::max(newest - view.count + 1, view.origin.y); }
 
 private:
@@ -58,7 +56,7 @@ template <typename T, typename Sum> class IntegralBand
 {
 public:
     //! @param channels 1 to GROUP_CHANNELS; they, the kernels and the memory outlive the band. @param bounds of them.
-    //! @param rows how many rows, the newest included, a reader looks at.
+    //! @param rows number of rows that stay readable, including the newest.
     IntegralBand(const std::vector<Channel>& channels, const ChannelBounds& bounds, Rect area, int rows,
             const DescriptorKernels& all, ScratchMemory& rowMemory, ScratchMemory& ringMemory)
         : channelRows(channels, area, bounds.gradient, all.pixels(T()).rows, rowMemory),
@@ -69,7 +67,7 @@ public:
     {
     }
 
-    //! Adds the image's rows up to and without y, area.y <= y <= area.y + area.height.
+    //! Adds the image's rows before y, area.y <= y <= area.y + area.height.
     void advance(int y)
     {
         ring.advance(y, [&](int row, const Sum* above, Sum* out) {
@@ -77,13 +75,13 @@ public:
         });
     }
 
-    //! Sums over n x n cells, each of which a Sum must hold.
+    //! Sums over n x n cells; each must fit a Sum.
     void cells(const CellEdges& edges, int n, CellGrid<Sum>& sums) const
     {
         kernels.cells(ring.rows(), edges.x, edges.y, n, sums);
     }
 
-    //! Sums over larger cells: those over parts of them are added up.
+    //! Sums over larger cells, added up from parts.
     void cells(const CellEdges& edges, int n, CellGrid<double>& sums) const
     {
         sums.create(n);
@@ -130,7 +128,7 @@ public:
     {
     }
 
-    //! Adds the image's rows up to and without y, area.y <= y <= area.y + area.height.
+    //! Adds the image's rows before y, area.y <= y <= area.y + area.height.
     void advance(int y)
     {
         ring.advance(y,
@@ -149,5 +147,4 @@ private:
     const DescriptorKernels& kernels;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -8,10 +8,9 @@
 #include "keypoint_batches.hpp"
 #include "plan.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-//! Memory that a thread reuses for each batch of keypoints. No batch reads what another has left there.
+//! Memory that a thread reuses for each batch of keypoints. No batch reads the content of another.
 struct Workspace
 {
     static constexpr int MAX_PACKS = 1 + (MAX_EXTRA_CHANNELS + GROUP_CHANNELS - 1) / GROUP_CHANNELS;
@@ -21,7 +20,7 @@ struct Workspace
     CellGrid<ushort> shortSums;                                            //!< over the finest cells
     CellGrid<unsigned> sums[MAX_GRANULARITY + 1];                          //!< over the cells of each level
     CellGrid<double> doubleSums[MAX_GRANULARITY + 1];
-    CellGrid<unsigned> samples;  //!< sums of rotated regions, over cells as fine as their grids
+    CellGrid<unsigned> samples;  //!< sums of rotated regions, one cell for each sample
     CellGrid<ushort>& sumsOf(ushort, int) { return shortSums; }
     CellGrid<unsigned>& sumsOf(unsigned, int level) { return sums[level]; }
     CellGrid<double>& sumsOf(double, int level) { return doubleSums[level]; }
@@ -39,19 +38,34 @@ template <typename Work> void parallelJobs(int count, const Work& work)
     });
 }
 
-/** A batch of keypoints that are described together, and what that takes. Their regions are all upright or all rotated.
- Regions, pixels and rows of descriptors are those of all keypoints of the image. */
+/** A batch of keypoints that are described together, all upright or all rotated. Regions, pixels and rows of descriptors are
+ those of all keypoints of the image. */
 struct BatchJob
 {
     const DescriptorPlan& plan;
     const Mat& grey;                       //!< the image, CV_8U or CV_16U
     const std::vector<Channel>& channels;  //!< all of the descriptor
     const std::vector<SupportRegion>& regions;
-    const std::vector<Rect>& pixels;  //!< that each keypoint needs
+    const std::vector<Rect>& pixels;  //!< that each keypoint reads
     const KeyPointBatch& batch;
     Workspace& workspace;
     Mat& descriptors;
 };
 
-}  // namespace iib
-}  // namespace cv
+//! Describes upright regions by quads, from sums over cells (upright.cpp).
+void describeUpright(const BatchJob& job);
+
+//! Describes rotated regions by quads, from samples on rotated grids (rotated.cpp).
+void describeRotated(const BatchJob& job);
+
+/** Describes regions by MAPPING_BOXES (boxes.cpp).
+
+Upright boxes lie on a grid, whose edges many of them share. Rotated keypoints need no samples. The means of gx and gy are
+linear in gx and gy, so they rotate like them. The means of |gx| and |gy| are interpolated from those of |gx|, |gy|,
+|gx + gy| and |gx - gy|, the gradient's magnitude in four directions. Boxes stay upright; only their centres rotate. */
+void describeBoxes(const BatchJob& job);
+
+//! The pixels of a region's boxes, upright or rotated by any angle, in whole squares; some may be reflected.
+Rect boxPixels(const SupportRegion& region, int border, Size image);
+
+}}  // namespace cv::iib

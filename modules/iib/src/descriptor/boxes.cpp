@@ -2,12 +2,10 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "boxes.hpp"
-
 #include "bands.hpp"
+#include "batch_job.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -19,7 +17,7 @@ public:
     typedef typename BoxSumKernels<T>::Sum Sum;
 
     //! @param source gx, gy and intensity of the image; outlives the band, as do the kernels and the workspace.
-    //! @param area of whole squares. @param rows of pixels, how many, the newest included, a reader looks at.
+    //! @param area of whole squares. @param rows number of pixel rows that stay readable, including the newest.
     SquareBand(const std::vector<Channel>& source, Rect area, int rows, const DescriptorPlan& plan,
             bool rotated, Workspace& workspace)
         : channelRows(source, area, 0, plan.kernels.pixels(T()).rows, workspace.channelRows),
@@ -30,7 +28,7 @@ public:
     {
     }
 
-    //! Adds the image's rows up to and without `end`, which does not decrease from call to call.
+    //! Adds the image's rows before `end`, which never decreases.
     void advance(int end)
     {
         ring.advance(end / BOX_SQUARE, [&](int y, const Sum* above, Sum* out) {
@@ -48,7 +46,7 @@ public:
 
     const RingRows<Sum>& integral() const { return ring.rows(); }
 
-    //! The first row of squares whose sums are at hand.
+    //! The oldest row of squares in the ring.
     int oldest() const { return ring.oldest(); }
 
 private:
@@ -73,22 +71,23 @@ Rect squaresOf(Rect pixels)
 //! The pixels of whole squares.
 Rect pixelsOf(Rect squares) { return Rect(squares.tl() * (int)BOX_SQUARE, squares.size() * (int)BOX_SQUARE); }
 
-//! The squares that count, for a region that may leave the image by a rounding.
+//! The squares that boxes may use.
 Rect boundsOf(int border, Size image)
 {
-    // BORDER_CLAMP leaves out the squares that an odd image cuts, unless there are no others.
+    // BORDER_CLAMP ignores the squares that the edge of an image of odd size cuts, unless there are no others
     if (border == IIB::BORDER_CLAMP)
         return Rect(0, 0, std::max(image.width / BOX_SQUARE, 1), std::max(image.height / BOX_SQUARE, 1));
     return squaresOf(border == IIB::BORDER_REFLECT ? reflectedImage(image) : Rect(Point(), image));
 }
 
-/* The matrix that turns means, a row for each lane that is read. The mean of |gx cos a + gy sin a| has period 180
- degrees; from its values at 0, 45, 90 and 135 degrees it is interpolated by 1, cos 2a, sin 2a and cos 4a. */
+/* The matrix that rotates means; a row for each lane that is read. The mean of |gx cos a + gy sin a| has period 180 degrees.
+ It is interpolated from its values at 0, 45, 90 and 135 degrees by 1, cos 2a, sin 2a and cos 4a. */
 void rotationMatrix(const Rotation& rotation, float matrix[BOX_LANES][BOX_LANES])
 {
     const double c = rotation.cosine, s = rotation.sine;
     const double c2 = c * c - s * s, s2 = 2 * s * c, c4 = c2 * c2 - s2 * s2;
-    const double diagonal = 0.70710678118654752;  // of a step to |gx + gy|
+    const double diagonal =
+            0.70710678118654752;  // |gx + gy| is sqrt(2) times the magnitude along the diagonal
     const double even = (1 + c4) / 4, odd = (1 - c4) / 4;
     std::fill(&matrix[0][0], &matrix[0][0] + BOX_LANES * BOX_LANES, 0.f);
     matrix[LANE_ABSOLUTE_X][LANE_ABSOLUTE_X] = matrix[LANE_ABSOLUTE_Y][LANE_ABSOLUTE_Y] =
@@ -179,7 +178,7 @@ bool sumsAreShort(const BatchJob& job)
 
 Rect boxPixels(const SupportRegion& region, int border, Size image)
 {
-    // Corners of the outermost grids, whose boxes do not turn: (28 sqrt(2) + 12) / 40 at most; 4 pixels for roundings
+    // corners of rotated boxes are at most (28 sqrt(2) + 12) / 40 from the centre; 4 pixels on either side for roundings
     const SupportRegion extent(region.centre, region.side * (region.isRotated() ? 1.3 : 1) + 8);
     return pixelsOf(squaresOf(extent.pixels(pixelsOf(boundsOf(border, image)))));
 }
@@ -189,5 +188,4 @@ void describeBoxes(const BatchJob& job)
     (job.grey.depth() == CV_8U && sumsAreShort(job) ? describeBatch<short> : describeBatch<int>)(job);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "../common/image_input.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 std::vector<Channel> channelsInUse(const Parameters& p, const Mat& grey, const std::vector<Mat>& extra)
 {
@@ -95,7 +94,7 @@ template <typename T> ImageRows<T> ChannelRows<T>::imageRows(int y)
     const T* around[3];
     for (int i = 0; i < 3; i++)
     {
-        // pixels beyond the image repeat its border, as Sobel's BORDER_REPLICATE
+        // BORDER_REPLICATE, as in the paper's reference
         const int imageY = std::min(std::max(y + i - 1, 0), gradientOf->rows - 1);
         T* out = row(imageY % IMAGE_ROWS);
         around[i] = out;
@@ -110,12 +109,12 @@ template <typename T> ImageRows<T> ChannelRows<T>::imageRows(int y)
     return {around[0], around[1], around[2]};
 }
 
-//! Fills what lies beside the image.
+//! Fills the pixels outside the image.
 template <typename T> void ChannelRows<T>::reflect(T* out) const
 {
     const int width = channels[0].map.cols, end = area.x + area.width;
     T* const pixels = out - origin;
-    // Reflected once, by fast copies; a cell at the bounds may hold a pixel that is reflected twice.
+    // fast copies for one reflection; then the pixels that are reflected twice
     const int left = std::min(-area.x, width - 1), right = std::min(end - width, width - 1);
     if (left > 0)
         std::reverse_copy(pixels + 1, pixels + 1 + left, pixels - left);
@@ -149,5 +148,4 @@ template <typename T> void ChannelRows<T>::compute(int y, T* out, ptrdiff_t abov
 template class ChannelRows<short>;
 template class ChannelRows<int>;
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

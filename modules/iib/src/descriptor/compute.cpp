@@ -6,24 +6,21 @@
 
 #include "../common/image_input.hpp"
 #include "angles.hpp"
-#include "boxes.hpp"
-#include "rotated.hpp"
-#include "upright.hpp"
+#include "batch_job.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
 typedef std::vector<int> Indices;
 
-//! Whether angles come from the image. Without a channel of it, regions stay upright.
+//! Whether angles come from the image. With extra channels alone, regions stay upright.
 bool findsAngles(const Parameters& p)
 {
     return p.orientation == IIB::ORIENTATION_GRADIENT && p.channels != 0;
 }
 
-//! The pixels that the descriptor of a region needs.
+//! The pixels that a region's descriptor reads.
 Rect pixelsOf(const DescriptorPlan& plan, const SupportRegion& region, Size image)
 {
     const int border = plan.parameters.border;
@@ -33,7 +30,7 @@ Rect pixelsOf(const DescriptorPlan& plan, const SupportRegion& region, Size imag
                               : region.pixels(region.bounds(image, border));
 }
 
-//! Keypoints near each other, all upright or all rotated, are one job. @param pixels that each keypoint needs.
+//! Cuts keypoints into jobs: near each other, and all upright or all rotated. @param pixels that each keypoint reads.
 std::vector<Indices> cutJobs(const std::vector<SupportRegion>& regions, const std::vector<Rect>& pixels)
 {
     Indices members[2];  // upright, rotated
@@ -53,7 +50,7 @@ bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image)
     const bool unknown = findsAngles(plan.parameters);
     if (!unknown && !region.isRotated())
         return region.isInside(image);
-    // an unknown angle may be the one that reaches farthest
+    // for an unknown angle, the one that reaches farthest
     const Rotation rotation(unknown ? 45 : region.angle);
     const double half = std::min(region.side, LARGEST_ROTATED_SIDE) / 2;
     const double reach = half * (std::abs(rotation.cosine) + std::abs(rotation.sine));
@@ -91,5 +88,4 @@ void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Ma
     });
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,17 +6,15 @@
 
 #include "plan.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Whether the keypoint's support region, upright or rotated, lies inside the image.
 bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image);
 
-/** Describes keypoints by the other steps (paper, algorithm 1). All arguments have passed their checks.
+/** Describes keypoints (paper, algorithm 1). All arguments are checked.
 @param extra maps of the image's size.
 @param descriptors keypoints.size() rows of plan.bytes, CV_8U, allocated. */
 void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Mat>& extra,
         const std::vector<KeyPoint>& keypoints, Mat& descriptors);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

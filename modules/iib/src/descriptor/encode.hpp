@@ -6,8 +6,7 @@
 
 #include "batch_job.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 template <typename Cell> void widen(const CellGrid<Cell>& cells, CellGrid<double>& wide)
 {
@@ -17,7 +16,7 @@ template <typename Cell> void widen(const CellGrid<Cell>& cells, CellGrid<double
             std::copy_n(cells.row(r, parity), cells.size() / 2 * GROUP_CHANNELS, wide.row(r, parity));
 }
 
-//! The largest factor by which Weights multiplies a sum, along one axis.
+//! The largest factor of Weights along one axis.
 inline double largestWeight(const Axis& axis, int n)
 {
     int smallest = INT_MAX, largest = 0;
@@ -35,24 +34,24 @@ inline double largestWeight(const LevelShape& shape, const CellEdges& edges)
     return largestWeight(x, shape.n) * largestWeight(y, shape.n);
 }
 
-/** The bits of a group of channels of one keypoint, level by level, from the sums over its finest cells. Products of
- sums and weights are integers of 32 bits at the finest levels, where these surely fit, and doubles at the others. */
+/** Writes the bits of a group of channels of one keypoint, level by level, from the sums over its finest cells. Products of
+ sums and weights are 32-bit integers at levels where these surely fit, else doubles. */
 struct LevelWriter
 {
     const BatchJob& job;
     const ChannelGroup& group;
     const CellEdges& edges;
-    const double largest;     //!< what the values of a pixel of four cells sum up to at most
-    uchar* const descriptor;  //!< which has the bits of the groups before
+    const double largest;     //!< four times the largest value of a pixel
+    uchar* const descriptor;  //!< has the bits of the groups before
 
-    //! Whether the largest weighted sum of a level surely fits an int, where no cell is longer than `longest`.
+    //! Whether the largest weighted sum of a level fits an int. @param longest bound of the length of cells.
     bool fitsInt(int level, double longest) const
     {
         const double sum = largest * longest * longest, area = longest * longest;
         return sum * area <= INT_MAX || sum * largestWeight(group.levels[level], edges) <= INT_MAX;
     }
 
-    //! A level and all coarser ones.
+    //! Writes a level and all coarser ones.
     template <typename Sum> void write(int level, const CellGrid<Sum>& cells, double longest) const
     {
         auto& parents = job.workspace.sumsOf(typename BitsKernels<Sum>::Parent(), level - 1);
@@ -62,7 +61,7 @@ struct LevelWriter
             writeFitting(level - 1, parents, 2 * longest);
     }
 
-    //! The same, in doubles where integers are too small. @param longest a bound of the length of cells.
+    //! The same, in doubles if integers are too small.
     template <typename Sum> void writeFitting(int level, const CellGrid<Sum>& cells, double longest) const
     {
         if (fitsInt(level, longest))
@@ -77,5 +76,4 @@ struct LevelWriter
     }
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -8,14 +8,13 @@
 #include "compute.hpp"
 
 #include "opencv2/core/utils/trace.hpp"
+#include "opencv2/iib/detail/files.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
-/** The maps that users pass beside the image. Throws unless there are `expected` single-channel maps of the image's
- size, 8U, 16U or 32F and finite. */
+//! The maps of extra channels. Throws unless there are `expected` of the image's size, each 8U, 16U or 32F and finite.
 std::vector<Mat> extraMaps(InputArrayOfArrays arrays, int expected, Size imageSize)
 {
     std::vector<Mat> maps;
@@ -48,7 +47,6 @@ bool overlap(const Mat& a, const Mat& b) { return a.datastart < b.dataend && b.d
 class IIBDescriptorExtractor_Impl CV_FINAL : public IIBDescriptorExtractor, public AnyImage
 {
 public:
-    //! @param checked parameters that have passed their check.
     explicit IIBDescriptorExtractor_Impl(const Parameters& checked)
         : plan(makePlan(checked)), detector(ORB::create())
     {
@@ -131,7 +129,7 @@ public:
     void save(const String& filename) const CV_OVERRIDE { saveWhole(*this, filename); }
 
 private:
-    //! Whether `feature` is this extractor, or a class of this library that holds it.
+    //! Whether `feature` is this extractor or contains it.
     bool leadsBack(Ptr<Feature2D> feature) const
     {
         while (feature && feature.get() != this)
@@ -199,7 +197,7 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
 
     descriptors.create((int)keypoints.size(), descriptorSize(), CV_8U);
     const Mat result = descriptors.getMat();
-    // not where the image is still read
+    // not in memory that is still read
     Mat rows = overlap(result, image) || std::any_of(extra.begin(), extra.end(),
                                                  [&](const Mat& map) { return overlap(result, map); })
                        ? Mat(result.size(), CV_8U)
@@ -211,7 +209,7 @@ void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArr
 
 void IIBDescriptorExtractor_Impl::write(FileStorage& fs) const
 {
-    // One node, which is then the first of a file: Algorithm::load() reads what Feature2D::write(file) wrote.
+    // one node, so that Algorithm::load() reads files of Feature2D::write(filename)
     fs << "IIB"
        << "{";
     writeParameters(fs, plan->parameters);
@@ -225,7 +223,8 @@ void IIBDescriptorExtractor_Impl::write(FileStorage& fs) const
 void IIBDescriptorExtractor_Impl::read(const FileNode& node)
 {
     const Parameters parameters = readParameters(node, plan->parameters);
-    const FileNode detectorNode = nodeNamed(node, "IIB")["detector"];  // not in files of the first versions
+    const FileNode detectorNode =
+            nodeNamed(node, "IIB")["detector"];  // missing in files of the first versions
     const Ptr<Feature2D> d = detectorNode.empty() ? detector : readDetector(detectorNode, detector);
     plan = makePlan(parameters);
     detector = d;
@@ -243,5 +242,4 @@ Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::create(float scaleFactor, in
     return makePtr<IIBDescriptorExtractor_Impl>(p);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,11 +7,9 @@
 #include "bands.hpp"
 #include "batch_job.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-/** The grid of points over a region.
-@param n points in a row, up to MAX_SAMPLES_IN_ROW, `sub` x `sub` of them a cell. @param border one of IIB::Border. */
+//! The grid of points over a region. @param n points in a row, up to MAX_SAMPLES_IN_ROW; a cell has sub x sub.
 inline SampleGrid gridOf(
         const SupportRegion& region, const Rotation& rotation, int n, int sub, int border, Size image)
 {
@@ -35,12 +33,12 @@ inline SampleGrid gridOf(
     return g;
 }
 
-//! The last rows of GROUP_CHANNELS channels over a rectangle of the image, side by side in each pixel.
+//! The last rows of GROUP_CHANNELS channels over a rectangle of the image, interleaved.
 template <typename T> class PixelBand
 {
 public:
     //! @param channels 1 to GROUP_CHANNELS; they, the kernels and the memory outlive the band.
-    //! @param rows how many rows, the newest included, a reader looks at.
+    //! @param rows number of rows that stay readable, including the newest.
     PixelBand(const std::vector<Channel>& channels, Rect area, int rows, const PixelKernels<T>& kernels,
             ScratchMemory& rowMemory, ScratchMemory& pixelMemory)
         : channelRows(channels, area, 0, kernels.rows, rowMemory), interleave(kernels.rotated.interleaveRow),
@@ -49,7 +47,7 @@ public:
     {
     }
 
-    //! Makes the rows up to and without `end` of the image; `end` does not decrease from call to call.
+    //! Makes the image's rows before `end`, which never decreases.
     void advance(int end)
     {
         ring.advance(end - 1,
@@ -58,7 +56,7 @@ public:
 
     const RingRows<T>& rows() const { return ring.rows(); }
 
-    //! The first row of the image at hand.
+    //! The oldest row of the image in the ring.
     int oldest() const { return ring.oldest(); }
 
 private:
@@ -68,7 +66,7 @@ private:
     RowRing<T> ring;
 };
 
-/* The 3 x 3 pixels around each place, side by side; beyond the map its border is repeated. */
+//! Copies the 3 x 3 pixels around each place side by side, with BORDER_REPLICATE.
 template <typename Pixel>
 void copyPatches(const Mat& map, const int* x, const int* y, int count, Mat& patches)
 {
@@ -86,22 +84,21 @@ void copyPatches(const Mat& map, const int* x, const int* y, int count, Mat& pat
     }
 }
 
-//! Whether maps of one size have the same pixels because they lie in the same memory.
+//! Whether maps of one size share their pixels.
 inline bool isSame(const Mat& a, const Mat& b)
 {
     return a.data == b.data && a.step == b.step && a.type() == b.type();
 }
 
-/* A pixel of a band costs about a sixteenth of what a point costs whose patch is copied. The limit on the band keeps
- memory and indices small: a few large regions may span billions of pixels. */
+/* Whether to copy a patch around each point, not a band. A patch costs as much as about 16 pixels of a band. The limit on the
+ band bounds memory and indices: a few large regions may span billions of pixels. */
 inline bool isSparse(const KeyPointBatch& batch)
 {
     const double samples = (double)batch.keypoints.size() * MAX_SAMPLES, width = batch.area.width;
     return width * batch.area.height > 16 * samples || width * batch.rows > 1 << 24;
 }
 
-/** The pixels of a batch at the points of one grid after another: from bands of the image, or, where grids touch few
- pixels of the area that they span, from patches around the points. */
+//! The pixels at the points of one grid after another, from bands of the image or, if isSparse(), from patches.
 template <typename T> class GridPixels
 {
 public:
@@ -120,7 +117,7 @@ public:
         }
     }
 
-    //! Moves on to the grid of a keypoint, which needs these pixels. Keypoints come in the order of the batch.
+    //! Moves on to the grid of the next keypoint of the batch. @param pixels that it reads.
     void moveTo(const Rect& pixels, const SampleGrid& grid)
     {
         if (sparse)
@@ -130,7 +127,7 @@ public:
         kernels.rotated.indices(grid, bands[0].rows(), bands[0].oldest(), index);
     }
 
-    //! Pixels of a pack, until the next call of moveTo(). Those at the points of the grid have these indices.
+    //! Pixels of a pack, and the indices of the grid's points among them, until the next call of moveTo().
     const T* pixels(size_t pack) const { return bands[pack].rows().data; }
     const int* indices() const { return index; }
 
@@ -176,10 +173,9 @@ private:
     const KeyPointBatch& batch;
     const bool sparse;
     Workspace& workspace;
-    std::vector<std::vector<Channel>> patches;  //!< as packs, of the places of one grid
+    std::vector<std::vector<Channel>> patches;  //!< the packs around the points of one grid
     std::vector<PixelBand<T>> bands;
     int index[MAX_SAMPLES];
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

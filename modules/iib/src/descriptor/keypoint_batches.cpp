@@ -4,8 +4,7 @@
 
 #include "keypoint_batches.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -26,7 +25,8 @@ std::vector<Indices> splitAtGaps(const std::vector<Rect>& regions, const Indices
         all.start = std::min(all.start, e.start);
         all.end = std::max(all.end, e.end);
     }
-    std::vector<int> part(all.size() + 1, 0);  // first what begins less what ends here, then which part it is
+    std::vector<int> part(
+            all.size() + 1, 0);  // regions that begin here less those that end, then the part's number
     for (int k : keypoints)
     {
         const Range e = extent(regions[k], vertical);
@@ -50,11 +50,11 @@ std::vector<Indices> splitAtGaps(const std::vector<Rect>& regions, const Indices
     return pieces;
 }
 
-//! Splits along both axes in turn until there is no gap left or enough rounds have passed.
+//! Splits along both axes in turn until there is no gap left, or MAX_CUTS times.
 std::vector<Indices> splitInRounds(const std::vector<Rect>& regions, const Indices& keypoints)
 {
     std::vector<Indices> parts(1, keypoints);
-    bool lastSplit = true;  // whether the round before did
+    bool lastSplit = true;  // whether the round before split any part
     for (int round = 0; round < MAX_CUTS; round++)
     {
         std::vector<Indices> next;
@@ -92,7 +92,7 @@ Rect unionOf(const std::vector<Rect>& regions, const Indices& keypoints)
     return all;
 }
 
-//! Cuts keypoints across the longer side of their area, where fewer regions are cut, into strips of equal size.
+//! Cuts keypoints into strips of equal size across the longer side of their area.
 void cutStrips(const std::vector<Rect>& regions, const Indices& keypoints, Rect area, int strips,
         std::vector<Indices>& batches)
 {
@@ -146,5 +146,4 @@ KeyPointBatch makeBatch(const std::vector<Rect>& regions, const Indices& keypoin
     return batch;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

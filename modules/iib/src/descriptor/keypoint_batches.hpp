@@ -6,19 +6,19 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Keypoints that are described together, from integral images over their common area.
 struct KeyPointBatch
 {
-    Rect area;                   //!< holds all their regions
-    int rows;                    //!< of the highest region
-    std::vector<int> keypoints;  //!< indices, by the band in which their region ends, then from left to right
+    Rect area;  //!< contains all their regions
+    int rows;   //!< of the highest region
+    std::vector<int>
+            keypoints;  //!< indices, sorted by the band in which the region ends, then from left to right
 
-    static constexpr int BAND_ROWS = 8;  //!< neighbours in a band find each other's sums in the cache
+    static constexpr int BAND_ROWS = 8;  //!< keypoints of a band share sums in the cache
 
-    //! The end of the band in which row `end` of the image, exclusive, is the last.
+    //! The end of the band in which a region ends. @param end of the region, exclusive.
     int bandEnd(int end) const
     {
         const int bands = (end - area.y + BAND_ROWS - 1) / BAND_ROWS;
@@ -26,15 +26,13 @@ struct KeyPointBatch
     }
 };
 
-//! How often keypoints are cut at gaps, along both axes in turn. Without a limit, keypoints that are cut off one by one
-//! would take quadratic time.
+//! Rounds of cuts at gaps, alternating between the axes. More rounds could take quadratic time.
 static constexpr int MAX_CUTS = 8;
 
-/** Cuts keypoints into those that are described together, so that pixels which no region touches are left out where a
- straight gap between the regions allows, in up to MAX_CUTS rounds, and so that none has much more than 1/workers of all
- pixels. Takes time linear in the keypoints and in the pixels of the image at most.
+/** Cuts keypoints into batches, at straight gaps between regions, in up to MAX_CUTS rounds. No batch has much more than
+ 1/workers of all pixels. Takes time linear in the keypoints and the pixels.
 
- @param regions the pixels that each keypoint of an image needs, not empty.
+ @param regions the pixels that each keypoint of an image reads, not empty.
  @param keypoints indices of those to cut.
  @return indices of the keypoints of each batch. */
 std::vector<std::vector<int>> cutBatches(
@@ -43,5 +41,4 @@ std::vector<std::vector<int>> cutBatches(
 //! @param regions of all keypoints of an image. @param keypoints their indices, one or more.
 KeyPointBatch makeBatch(const std::vector<Rect>& regions, const std::vector<int>& keypoints);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -9,8 +9,7 @@
 
 #include "../common/file_numbers.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static void checkBoxes(const Parameters& p)
 {
@@ -108,7 +107,7 @@ Parameters readParameters(const FileNode& node, const Parameters& present)
     readNumber(fn, "channels", p.channels);
     readNumber(fn, "mapping", p.mapping);
     readNumber(fn, "overlap", p.overlap);
-    readNumber(fn, "useOrientation", p.orientation);  // 0 and 1 once were false and true
+    readNumber(fn, "useOrientation", p.orientation);  // 0 and 1 in old files mean false and true
     readNumber(fn, "extraChannels", p.extraChannels);
     readNumber(fn, "border", p.border);
     p.selection = readSelection(fn["selection"]);
@@ -116,5 +115,4 @@ Parameters readParameters(const FileNode& node, const Parameters& present)
     return p;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,12 +6,11 @@
 
 #include "kernels/boxes.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static constexpr int MAX_EXTRA_CHANNELS = 16, ALL_CHANNELS = 63;
 
-//! What create() is given; setters go through check() before anything changes.
+//! The arguments of create().
 struct Parameters
 {
     float scaleFactor;
@@ -22,15 +21,14 @@ struct Parameters
     int orientation;
     int extraChannels;
     int border;
-    Mat_<int> selection;  //!< as IIBDescriptorExtractor::setSelection takes it; empty: all quads
+    Mat_<int> selection;  //!< see IIBDescriptorExtractor::setSelection; empty: all quads
 
     //! Throws a cv::Exception that names the parameter and its range.
     void check() const;
 
-    //! Image channels in use and extra channels.
     int channelCount() const { return (int)channelKinds().size(); }
 
-    //! Those channels: an IIB::Channel each, or 0 for an extra one.
+    //! The channels in use: an IIB::Channel each, or 0 for an extra one.
     std::vector<int> channelKinds() const
     {
         std::vector<int> kinds;
@@ -42,14 +40,13 @@ struct Parameters
     }
 };
 
-//! The bits that there are at a place, as in the mask of a selection. @param kind of the channel.
+//! All bits of a place, as a mask of a selection. @param kind of the channel.
 inline int bitsOfPlace(int mapping, int kind, int level, int row, int col)
 {
     return mapping == IIB::MAPPING_BOXES ? boxMask(kind, level, row, col) : (1 << bitsPerQuad(mapping)) - 1;
 }
 
-/** Calls visit(channel, row, column, bits) for each place of a level: those of the selection, or all, row by row, where
- boxes may have no bits in some channels. */
+//! Calls visit(channel, row, column, bits) for each place of a level: those of the selection, or all, row by row.
 template <typename Visit> void forEachPlace(const Parameters& p, int level, const Visit& visit)
 {
     for (int i = 0; i < p.selection.rows; i++)
@@ -68,9 +65,8 @@ template <typename Visit> void forEachPlace(const Parameters& p, int level, cons
 //! As keys of the map that is open in `fs`.
 void writeParameters(FileStorage& fs, const Parameters& parameters);
 
-/** What writeParameters wrote; `present` is kept where a number is missing.
- @throws cv::Exception for another format and for what is no parameter or out of its range. */
+/** Reads the node of writeParameters. Missing numbers keep the values of `present`.
+ @throws cv::Exception for another format and for values out of range. */
 Parameters readParameters(const FileNode& node, const Parameters& present);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -4,10 +4,9 @@
 
 #include "plan.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-//! The bits of a phase of a level that are in use. @param group which four of the channels.
+//! The bits in use of a phase of a level. @param group number of the group of four channels.
 static ChosenBits chosenBits(const Parameters& p, int level, int group, int index)
 {
     const QuadPhase phase(1 << level, index);
@@ -26,7 +25,7 @@ static ChosenBits chosenBits(const Parameters& p, int level, int group, int inde
     return ChosenBits(masks);
 }
 
-//! Adds a level to the groups of channels, at this bit of the descriptor. @return how many bits it has.
+//! Adds a level to the groups of channels, at this bit of the descriptor. @return its number of bits.
 static int addQuads(const Parameters& p, int finest, int level, int offset, std::vector<ChannelGroup>& groups)
 {
     int bits = 0;
@@ -43,7 +42,6 @@ static int addQuads(const Parameters& p, int finest, int level, int offset, std:
     return bits;
 }
 
-//! The lane in which a channel of this kind is.
 static int laneOf(int kind)
 {
     const int lanes[IMAGE_PLANES] = {
@@ -51,7 +49,7 @@ static int laneOf(int kind)
     return lanes[planeOf(kind)];
 }
 
-//! Which comparisons are chosen, where they lie in memory.
+//! The comparisons in use of a level of boxes.
 static ChosenBits chosenOf(const Parameters& p, int level, const BoxGridShape& shape)
 {
     std::vector<uint64> masks((shape.comparisonBytes() + 7) / 8, 0);
@@ -71,7 +69,7 @@ static ChosenBits chosenOf(const Parameters& p, int level, const BoxGridShape& s
     return ChosenBits(masks);
 }
 
-//! The same for boxes.
+//! addQuads() for boxes.
 static int addBoxes(const Parameters& p, int level, int offset, BoxPlan& plan)
 {
     const BoxGrid& grid = BOX_GRIDS[level - 1];
@@ -112,5 +110,4 @@ Ptr<const DescriptorPlan> makePlan(const Parameters& p)
     return makePtr<const DescriptorPlan>(plan);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

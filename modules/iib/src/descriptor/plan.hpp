@@ -6,8 +6,7 @@
 
 #include "parameters.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! Which boxes and comparisons a descriptor of MAPPING_BOXES needs.
 struct BoxPlan
@@ -57,5 +56,4 @@ struct DescriptorPlan
 //! @param checked parameters that have passed their check().
 Ptr<const DescriptorPlan> makePlan(const Parameters& checked);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -4,21 +4,20 @@
 
 #include "parameters.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
 struct LearnedSelection
 {
-    float scale;  // of the region of support, against the scale factor that the user gives
+    float scale;  //!< factor of the user's scale factor
     int granularity, channels, mapping;
-    const char* masks;  // null: all bits
+    const char* masks;  //!< encoded masks of all places; null: all bits
 };
 
 #include "presets.generated.hpp"
 
-//! As setSelection takes it.
+//! The argument of setSelection().
 Mat selectionOf(const LearnedSelection& p)
 {
     const Parameters all = {1.f, p.granularity, p.channels, p.mapping, true, 0, 0, 0, Mat_<int>()};
@@ -62,10 +61,9 @@ struct DetectorScale
     float scaleFactor;
 };
 
-/* Paper, "Experiments Combined with Feature Detectors", for AKAZE to SURF. FAST, AGAST (size 7) and GFTT (size 3) find
- corners of one size: a region of 64 pixels, as in "Predefined Feature Points". The sizes of MSER and SimpleBlob are the
- diameters of what they found; the region of support takes in its surroundings. HessianDetector: the right matches of
- PRESET_UNIVERSAL where light and camera change (16 and 20 are as good). */
+/* AKAZE to SURF: paper, "Experiments Combined with Feature Detectors". FAST, AGAST (size 7) and GFTT (size 3) find corners of
+ one size: a region of 64 pixels, as in "Predefined Feature Points". MSER and SimpleBlob give the diameters of blobs; the
+ region includes their surroundings. HessianDetector: most correct matches of PRESET_UNIVERSAL (16 and 20 are as good). */
 const DetectorScale detectorScales[] = {{"akaze", 12.f}, {"orb", 2.f}, {"brisk", 4.f}, {"sift", 20.f},
         {"kaze", 20.f}, {"surf", 4.f}, {"fast", 64.f / 7}, {"agast", 64.f / 7}, {"gftt", 64.f / 3},
         {"mser", 2.f}, {"simpleblob", 4.f}, {"hessian", 18.f}};
@@ -78,7 +76,7 @@ float IIBDescriptorExtractor::scaleFactorFor(const String& detectorName)
     for (size_t i = 0; i < detectorName.size(); i++)
         name += (char)tolower((unsigned char)detectorName[i]);
     name = name.substr(name.rfind('.') == String::npos ? 0 : name.rfind('.') + 1);
-    // Algorithm names of OpenCV that are not the short name
+    // names of OpenCV's classes, such as FastFeatureDetector
     for (const char* ending : {"featuredetector", "detector"})
     {
         const size_t at = name.rfind(ending);
@@ -129,5 +127,4 @@ Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::createFor(const Ptr<Feature2
     return extractor;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,25 +7,23 @@
 #include "../common/geometry.hpp"
 #include "parameters.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-//! A bound of the lengths of the n cells in a row of a support region.
+//! Bound of the lengths of the n cells in a row of a support region.
 inline double longestCell(double side, int n) { return std::ceil(side / n); }
 
-//! The pixels of an image that is reflected once at each side, without its border a second time.
+//! The area of an image that is reflected once at each side (BORDER_REFLECT_101).
 inline Rect reflectedImage(Size image)
 {
     return Rect(1 - image.width, 1 - image.height, 3 * image.width - 2, 3 * image.height - 2);
 }
 
-/** Region of support of a keypoint and its quadtree of cells (paper, "Local Patch Generation"). Pure
- geometry, in pixels of the image. */
+//! Region of support of a keypoint (paper, "Local Patch Generation"), in pixels of the image.
 struct SupportRegion
 {
-    Point2f centre;     //!< KeyPoint::pt, which counts from the centre of pixel 0
+    Point2f centre;     //!< KeyPoint::pt; 0 is the centre of pixel 0
     double x, y, side;  //!< top left corner of the upright region, and side; pixel i covers [i, i + 1)
-    float angle;        //!< in degrees, clockwise in the image; a negative one means upright
+    float angle;        //!< in degrees, clockwise in the image; negative: upright
 
     SupportRegion(Point2f centre_, double side_, float angle_ = -1)
         : centre(centre_), x(centre_.x + 0.5 - side_ / 2), y(centre_.y + 0.5 - side_ / 2), side(side_),
@@ -35,7 +33,7 @@ struct SupportRegion
 
     bool isRotated() const { return angle >= 0; }
 
-    //! Pixels that hold the part of the region inside some bounds; one of their border if there is none.
+    //! Pixels of the region inside some bounds; at least one pixel.
     Rect pixels(Rect bounds) const
     {
         const Point first = bounds.tl(), end = bounds.br();
@@ -44,7 +42,7 @@ struct SupportRegion
         return Rect(a.x, a.y, std::max(b.x - a.x, 1), std::max(b.y - a.y, 1));
     }
 
-    //! The pixels that count: those of the image, unless the region leaves it under BORDER_REFLECT.
+    //! The pixels that the region may use: the image, or its reflection under BORDER_REFLECT.
     Rect bounds(Size image, int border) const
     {
         if (border != IIB::BORDER_REFLECT || isInside(image))
@@ -55,7 +53,7 @@ struct SupportRegion
     //! Whether no pixel of the upright region lies outside the image.
     bool isInside(Size image) const
     {
-        // as whole edges, which are the floors of these, compare with whole numbers
+        // edges are the floors of these
         return x + 0.5 >= 0 && x + side + 0.5 < image.width + 1 && y + 0.5 >= 0 &&
                y + side + 0.5 < image.height + 1;
     }
@@ -71,13 +69,13 @@ inline SupportRegion regionOf(const KeyPoint& keypoint, const Parameters& p)
 //! A rotated region is cut to this side, so that the offsets of its points fit 32 bits.
 static constexpr double LARGEST_ROTATED_SIDE = 16384;
 
-//! An upright square that holds the region at any angle, and two pixels for roundings.
+//! An upright square that contains the region at any angle, plus two pixels for roundings.
 inline SupportRegion circumscribed(const SupportRegion& region)
 {
     return SupportRegion(region.centre, 2 * (std::min(region.side, LARGEST_ROTATED_SIDE) * 0.7072 + 2));
 }
 
-//! The pixels of the image that a region may sample at any angle, at least one. @param border one of IIB::Border.
+//! The pixels of the image that a region may sample at any angle, at least one.
 inline Rect rotatedPixels(const SupportRegion& region, int border, Size image)
 {
     const SupportRegion square = circumscribed(region);
@@ -87,5 +85,4 @@ inline Rect rotatedPixels(const SupportRegion& region, int border, Size image)
     return Rect(x.start, y.start, x.size(), y.size());
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

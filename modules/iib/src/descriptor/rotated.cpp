@@ -2,18 +2,15 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "rotated.hpp"
-
 #include "encode.hpp"
 #include "grid_pixels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
-/** What the channels of a descriptor are sampled from, up to GROUP_CHANNELS values to a pixel: first what those of the
- image are made of, if there are any, then extra maps. @param channels of the image before the extra ones. */
+/** The maps to sample, in packs of up to GROUP_CHANNELS: first those of the image's channels, if there are any, then extra
+ maps. @param channels with the image's before the extra ones. */
 std::vector<std::vector<Channel>> packsOf(const std::vector<Channel>& channels)
 {
     std::vector<std::vector<Channel>> packs;
@@ -30,7 +27,6 @@ std::vector<std::vector<Channel>> packsOf(const std::vector<Channel>& channels)
     return packs;
 }
 
-//! Edges of n x n cells of the same size.
 CellEdges equalEdges(int n, int cell)
 {
     CellEdges edges;
@@ -40,7 +36,7 @@ CellEdges equalEdges(int n, int cell)
     return edges;
 }
 
-//! The sums over cells of one keypoint after another.
+//! Makes the sums over cells of one keypoint after another.
 template <typename T> class CellSampler
 {
 public:
@@ -53,7 +49,7 @@ public:
         sums = job.workspace.planes.get<int>((size_t)(IMAGE_PLANES + kinds + GROUP_CHANNELS) * MAX_SAMPLES);
     }
 
-    //! All planes of sums. @param points of the grid. @param angle of its rotation, in degrees.
+    //! Makes all planes of sums. @param angle of the grid's rotation, in degrees.
     void sum(const GridPixels<T>& points, const std::vector<std::vector<Channel>>& packs,
             const SampleGrid& grid, const Rotation& rotation, float angle)
     {
@@ -76,7 +72,7 @@ public:
         }
     }
 
-    //! The bits of all groups of channels.
+    //! Writes the bits of all groups of channels.
     void write(const SampleGrid& grid, uchar* descriptor)
     {
         const DescriptorPlan& plan = job.plan;
@@ -108,7 +104,7 @@ private:
             planes[i] = plane(places[c]);
             const int kind = channels[c].kind;
             const bool isSigned = kind == IIB::CHANNEL_SIGNED_GRAD_X || kind == IIB::CHANNEL_SIGNED_GRAD_Y;
-            // Both components are 4 times the largest pixel at most; rotated, one is sqrt(2) times that at most.
+            // a component is at most 4 times the largest pixel, and rotated at most sqrt(2) times that
             const int largest = 6 * maxPixel(channels[c].map.depth());
             addends[i] = isSigned ? largest * grid.sub * grid.sub : 0;
             if (usesGradient(channels[c]))
@@ -121,7 +117,7 @@ private:
     const BatchJob& job;
     const std::vector<Channel>& channels;
     const RotatedSampleKernels<T>& kernels;
-    int places[IMAGE_PLANES + MAX_EXTRA_CHANNELS];  //!< of each channel, in the planes of sums
+    int places[IMAGE_PLANES + MAX_EXTRA_CHANNELS];  //!< plane of each channel
     int* sums;
 };
 
@@ -158,5 +154,4 @@ void describeRotated(const BatchJob& job)
     (is16Bit(job.channels) ? describeBatch<int> : describeBatch<short>)(job);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

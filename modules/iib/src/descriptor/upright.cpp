@@ -2,30 +2,28 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "upright.hpp"
-
 #include "bands.hpp"
 #include "encode.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
-//! Whether sums down the columns take less time than integral images: where cells are narrow, and keypoints are few.
+//! Whether sums down the columns are faster than integral images: for narrow cells and few keypoints.
 bool columnsAreFaster(const BatchJob& job, const std::vector<Channel>& channels, bool ofImage, double side)
 {
-    const double pixelsOfKeyPoint = 256;  // so many make up for the longer time that a keypoint's cells take
+    const double pixelsOfKeyPoint =
+            256;  // the extra time for a keypoint's cells, in pixels of an integral image
     for (const Channel& c : channels)
         ofImage = ofImage && c.kind != 0;
     const int n = job.plan.cellsInRow();
     const Rect area = job.batch.area;
-    // 7 * (64.f / 7), the region of FAST's keypoints, is a little more than 64
+    // 1.000001: the region of FAST's keypoints, 7 * (64.f / 7), is a little more than 64
     return job.plan.kernels.columnCells && ofImage && n % 8 == 0 && side <= NARROW_CELL * n * 1.000001 &&
            pixelsOfKeyPoint * (double)job.batch.keypoints.size() <= (double)area.width * area.height;
 }
 
-//! Describes the keypoints for a group of channels, by sums over cells that a Band makes.
+//! Describes the keypoints for a group of channels. A Band makes the sums over cells.
 template <typename Band, typename Sum>
 void describeBatch(const BatchJob& job, const ChannelGroup& group, const std::vector<Channel>& channels,
         const ChannelBounds& bounds)
@@ -50,10 +48,10 @@ void describeBatch(const BatchJob& job, const ChannelGroup& group, const std::ve
     }
 }
 
-//! How sums over cells are made, and whether that serves: whether pixels and sums fit its types.
+//! A way to make sums over cells; it applies if pixels and sums fit its types.
 struct Summation
 {
-    bool serves;
+    bool applies;
     void (*describe)(const BatchJob&, const ChannelGroup&, const std::vector<Channel>&, const ChannelBounds&);
 };
 
@@ -74,7 +72,7 @@ void describeUpright(const BatchJob& job)
         const double largestSum = bounds.value * pixels;
         const bool fits16Bits = largestSum <= USHRT_MAX, fits32Bits = largestSum <= UINT_MAX;
         const bool ofBytes = !is16Bit(channels);
-        // the quickest first; the last one is always right
+        // the fastest first; the last one always applies
         const Summation ways[] = {
                 {ofBytes && fits16Bits && columnsAreFaster(job, channels, bounds.gradient > 0, side),
                         describeBatch<ColumnBand, ushort>},
@@ -83,11 +81,10 @@ void describeUpright(const BatchJob& job)
                 {fits32Bits, describeBatch<IntegralBand<int, unsigned>, unsigned>},
                 {true, describeBatch<IntegralBand<int, unsigned>, double>}};
         const Summation* way = ways;
-        while (!way->serves)
+        while (!way->applies)
             way++;
         way->describe(job, group, channels, bounds);
     }
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

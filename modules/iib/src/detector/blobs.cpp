@@ -9,14 +9,13 @@
 
 #include <tuple>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
-const int LEAST_ROWS = 32;  // a thread's, since it smooths about 20 more above
+const int LEAST_ROWS = 32;  // of a part, since it smooths about 20 rows more above
 
-//! Scales from this sigma on, in pixels, are smooth enough for half the resolution.
+//! Scales from this sigma on, in pixels, are searched at half the resolution.
 const double LEAST_HALVED_SIGMA = 4;
 
 //! A pixel with the largest response among its neighbours in place and scale.
@@ -24,12 +23,12 @@ struct Extremum
 {
     float response;
     int scale, y, x;     //!< in pixels of its octave
-    float around[3][3];  //!< the responses
-    //! Those of the scales before and after at this pixel; of the first and last: its own.
-    float smaller, larger;
+    float around[3][3];  //!< responses around the pixel
+    float smaller,
+            larger;  //!< responses of the scales before and after; of the first and last scale: `response`
 };
 
-//! Stronger ones come first; those of the same response are ordered by scale and place.
+//! Sorts by response, strongest first, then by scale and place.
 bool isBefore(const Extremum& a, const Extremum& b)
 {
     return std::tie(b.response, a.scale, a.y, a.x) < std::tie(a.response, b.scale, b.y, b.x);
@@ -53,12 +52,12 @@ public:
             octaves.push_back(Octave(sigmas, fine, p.scales, true, normalized.size()));
     }
 
-    //! The strongest extrema, at least those that are wanted, in parts of the image.
+    //! The strongest extrema of each part of the image, at least maxFeatures in all.
     std::vector<std::vector<Extremum>> extrema() const
     {
         std::vector<Part> parts;
         const int threads = getNumThreads();
-        for (int i = 0; i < threads; i++)  // so that half of the parts are half of the work
+        for (int i = 0; i < threads; i++)  // alternate the octaves, to balance the work
             for (const Octave& octave : octaves)
             {
                 const int first = octave.borders[octave.begin], rows = octave.size.height - 2 * first;
@@ -74,7 +73,7 @@ public:
         return found;
     }
 
-    //! Refined by quadratic fits: of the response in place, and of the response along the scales.
+    //! Refined by quadratic fits of the response, in place and along the scales.
     KeyPoint refined(const Extremum& e) const
     {
         const auto& r = e.around;
@@ -89,7 +88,7 @@ public:
                     within((xy * dx - xx * dy) / determinant, .7f));
         const float curvature = e.smaller + e.larger - 2 * c;
         const float step = curvature < 0 ? within((e.smaller - e.larger) / (2 * curvature), .5f) : 0.f;
-        // 2^(step / 2), by its Taylor series: std::exp2 differs between systems
+        // Taylor series of 2^(step / 2): std::exp2 differs between systems
         const float growth = 1 + step * (.34657359f + step * .06005663f);
         Point2f pt((float)e.x + offset.x, (float)e.y + offset.y);
         if (e.scale >= fine)  // the centre of half-resolution pixel x lies between pixels 2 x and 2 x + 1
@@ -121,7 +120,7 @@ private:
         const DetectorKernels& kernels = detectorKernels();
         const int last = (int)octave.sigmas.size() - 1;
         std::vector<int> columns(octave.size.width);
-        float least = threshold;  // rises once there are more than are wanted
+        float least = threshold;  // rises once there are more than maxFeatures
         for (int y = part.first; y <= part.last; y++)
         {
             space.advance(y);
@@ -155,7 +154,7 @@ private:
             found.push_back(e);
     }
 
-    //! Whether a response is at least `least`, larger than its neighbours that come earlier and not smaller than the others.
+    //! Whether a response is at least `least`, larger than earlier neighbours, and not smaller than later ones.
     static bool isExtremum(const Octave& octave, const ScaleSpace& space, size_t s, int x, float least)
     {
         const float* const* rows = space.around(s);
@@ -190,7 +189,7 @@ private:
     const size_t most;
     const float threshold;
     std::vector<double> sigmas;  //!< of all scales, in pixels of `normalized`
-    int fine;                    //!< scales at full resolution, the first
+    int fine;                    //!< number of scales at full resolution
     std::vector<Octave> octaves;
 };
 
@@ -230,5 +229,4 @@ std::vector<KeyPoint> findBlobs(
     return keypoints;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,10 +6,9 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-//! Parameters of HessianDetector, described there.
+//! See HessianDetector::create.
 struct HessianParameters
 {
     int maxFeatures;
@@ -18,7 +17,7 @@ struct HessianParameters
     float sigma, normalizationSigma;
     int workingSize;
 
-    //! Throws (StsOutOfRange) for values that HessianDetector::create does not take.
+    //! Throws StsOutOfRange for values that HessianDetector::create refuses.
     void check() const;
 };
 
@@ -26,9 +25,8 @@ struct HessianParameters
 
 @param normalized CV_8U, the normalized image.
 @param mask of the image: empty or CV_8U.
-@param reduction how many pixels of the image, in both directions, one of `normalized` stands for. */
+@param reduction side of the square of image pixels behind a pixel of `normalized`. */
 std::vector<KeyPoint> findBlobs(
         const Mat& normalized, const HessianParameters& parameters, const Mat& mask, int reduction);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "../common/file_numbers.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -56,7 +55,7 @@ Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present)
 {
     const String name = node.isMap() && node["class"].isString() ? (String)node["class"] : String();
     if (name.empty())
-        CV_Error(Error::StsParseError, "the file's detector has no class; it must be what write() wrote");
+        CV_Error(Error::StsParseError, "the file's detector has no class; read a node of write()");
     const FileNode parameters = node["parameters"];
     if (name == "Feature2D.ORB")
         return readOrb(parameters);
@@ -71,7 +70,7 @@ Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present)
         const Ptr<NormalizedDetector> wrapper = present.dynamicCast<NormalizedDetector>();
         const Ptr<Feature2D> inside =
                 readDetector(node["detector"], wrapper ? wrapper->getDetector() : present);
-        float sigma = 0;  // refused by create()
+        float sigma = 0;  // create() refuses it
         readNumber(node, "sigma", sigma);
         return NormalizedDetector::create(inside, sigma);
     }
@@ -83,5 +82,4 @@ Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present)
     return present;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

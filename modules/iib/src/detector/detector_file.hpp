@@ -6,18 +6,16 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-/* The detector of an extractor in a file. Files hold HessianDetector, NormalizedDetector and ORB, which create()
- starts with and which writes nothing of itself; of others they hold the name, and what those write themselves. */
+/* The detector of an extractor in a file. HessianDetector, NormalizedDetector and ORB, whose write() stores nothing, are stored
+ completely. For others the file has the class name and the output of write(). */
 
 //! Writes class and parameters as keys of the map that is open in `fs`.
 void writeDetector(FileStorage& fs, const Feature2D& detector);
 
-/** Creates the ORB, HessianDetector or NormalizedDetector that writeDetector wrote. For any other class `present` must
- be of it: it reads the parameters and is returned. @throws cv::Exception (StsParseError) that tells what to do. */
+/** Creates the ORB, HessianDetector or NormalizedDetector of a file. For any other class, `present` must be of this class: it
+ reads the parameters and is returned. @throws cv::Exception (StsParseError) that says what to do. */
 Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -8,16 +8,16 @@
 #include "blobs.hpp"
 
 #include "opencv2/core/utils/trace.hpp"
+#include "opencv2/iib/detail/files.hpp"
 #include "opencv2/iib/hessian_detector.hpp"
 
 #include <numeric>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
-//! Means of `factor` x `factor` pixels, rounded; what is left at the right and below is left out.
+//! Rounded means of `factor` x `factor` pixels; incomplete squares at the right and bottom are dropped.
 template <typename T> Mat reduced(const Mat& grey, int factor)
 {
     Mat result(grey.rows / factor, grey.cols / factor, grey.type());
@@ -99,7 +99,7 @@ public:
     using Feature2D::write;
     void write(FileStorage& fs) const CV_OVERRIDE
     {
-        // One node, which is then the first of a file: Algorithm::load() reads what Feature2D::write(file) wrote.
+        // one node, so that Algorithm::load() reads files of Feature2D::write(filename)
         fs << "HessianDetector"
            << "{"
            << "format" << 1 << "maxFeatures" << p.maxFeatures << "threshold" << p.threshold << "scales"
@@ -145,5 +145,4 @@ Ptr<HessianDetector> HessianDetector::create(
     return makePtr<HessianDetector_Impl>(p);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

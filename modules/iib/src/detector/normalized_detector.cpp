@@ -8,10 +8,10 @@
 #include "detector_file.hpp"
 
 #include "opencv2/core/utils/trace.hpp"
+#include "opencv2/iib/detail/files.hpp"
 #include "opencv2/iib/normalized_detector.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -103,5 +103,4 @@ Ptr<NormalizedDetector> NormalizedDetector::create(const Ptr<Feature2D>& detecto
     return makePtr<NormalizedDetector_Impl>(detector, sigma);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,13 +6,12 @@
 
 #include "../normalization/kernels/kernels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
-/** Steps from an image that is smooth by `variance` to Gaussians of `sigmas` (increasing). A step at most doubles the
- variance, so that its taps are never farther apart than the image is smooth. */
+/** Steps from an image of Gaussian smoothness `variance` to increasing `sigmas`. A step at most doubles the variance, so that
+ its taps are close enough together. */
 std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas, double variance)
 {
     const double unit = 40 << CONTRAST_BITS;  // a local standard deviation
@@ -23,7 +22,7 @@ std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas, dou
         while (wanted - variance > 1e-9)
         {
             const double added = std::min(wanted - variance, std::max(variance, 4. / 3));
-            // Five taps, twice (w, 1 - 2 w, w), of which each adds 2 w spacing^2. w is 1/3 at the most: one peak.
+            // Five taps: twice (w, 1 - 2 w, w), each of which adds 2 w spacing^2. w <= 1/3 gives a single peak.
             const int spacing = cvCeil(std::sqrt(.75 * added));
             const double w = added / (4 * spacing * spacing);
             steps.push_back({spacing,
@@ -58,7 +57,7 @@ ScaleSpace::ScaleSpace(const Mat& normalized_, const Octave& octave_, int first_
 {
     const std::vector<SmoothingStep>& steps = octave.steps;
     const int width = octave.size.width;
-    std::vector<int> oldest(ahead.size(), 0);  // row that is still needed, from advance()'s row
+    std::vector<int> oldest(ahead.size(), 0);  // oldest row that is needed, relative to advance()'s row
     for (size_t i = steps.size(); i-- > 0;)
     {
         const SmoothingStep& s = steps[i];
@@ -156,5 +155,4 @@ void ScaleSpace::makeResponses(int y)
         }
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

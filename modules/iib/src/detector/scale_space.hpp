@@ -8,10 +8,9 @@
 
 #include <array>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-//! The scales of one resolution. The scales next to those with keypoints are among them, to be compared with.
+//! The scales of one resolution: the scales with keypoints and their neighbours.
 struct Octave
 {
     bool halved;  //!< at half the normalized image's resolution
@@ -20,9 +19,9 @@ struct Octave
     std::vector<int> borders;  //!< pixels on each side without keypoints of a scale
     std::vector<SmoothingStep> steps;
     int first;       //!< the number, among all scales, of the first of these
-    int begin, end;  //!< those of `sigmas` whose keypoints are wanted
+    int begin, end;  //!< the scales with keypoints, among `sigmas`
 
-    //! Of `scales` (sigmas in the normalized image's pixels) those from `begin` to before `end`.
+    //! @param scales sigmas in the normalized image's pixels. @param begin, end the scales with keypoints.
     Octave(const std::vector<double>& scales, int begin, int end, bool halved, Size imageSize);
 };
 
@@ -67,5 +66,4 @@ private:
     std::vector<std::array<const float*, 3>> nearRows;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

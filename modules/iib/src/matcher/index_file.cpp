@@ -6,11 +6,10 @@
 
 #include "opencv2/iib/detail/checked_file.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static const FileKind KIND = {"IIBINDEX", 1, "an index of HierarchicalMatcher"};
-static const size_t CHUNK_ROWS = 4096;  // what is unpacked or packed at once
+static const size_t CHUNK_ROWS = 4096;  // rows unpacked or packed at a time
 
 void saveCodes(const String& filename, const MatcherParameters& p, const PackedCodes& codes)
 {
@@ -55,7 +54,7 @@ Ptr<PackedCodes> loadCodes(const String& filename, MatcherParameters& parameters
     {
         total += count;
         if (count > INT_MAX)
-            file.fail("its numbers do not make sense");
+            file.fail("it has impossible numbers of rows");
         file.expect(total, width);
     }
     codes->reserve(rows.size(), (size_t)total);
@@ -75,5 +74,4 @@ Ptr<PackedCodes> loadCodes(const String& filename, MatcherParameters& parameters
     return codes;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,20 +6,18 @@
 
 #include "parameters.hpp"
 
+#include "opencv2/iib/detail/files.hpp"
 #include "opencv2/iib/detail/packed_codes.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* Format 1 of an index, a checked file: u32: number of levels, each level's bytes, mode, cross-check; f32: maximal
-ratio, each threshold; u64: number of images, each image's rows; the descriptors of all images. Descriptors pass through
-in pieces, so that no second copy of them is in memory. */
+ratio, each threshold; u64: number of images, each image's rows; the descriptors of all images. */
 
-//! @param parameters with or without level sizes; the file gets those of the codes.
+//! Writes the codes, their level sizes, and the other parameters.
 void saveCodes(const String& filename, const MatcherParameters& parameters, const PackedCodes& codes);
 
-//! Reads what saveCodes wrote. @throws cv::Exception unless the file is whole and its parameters are valid.
+//! Reads a file of saveCodes. @throws cv::Exception unless the file is whole and its parameters are valid.
 Ptr<PackedCodes> loadCodes(const String& filename, MatcherParameters& parameters);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -5,10 +5,10 @@
 #include "../common/file_numbers.hpp"
 #include "../common/outputs.hpp"
 #include "index_file.hpp"
+#include "parameters.hpp"
 #include "search.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -18,7 +18,7 @@ DMatch toMatch(const PackedCodes& trains, int query, MatchKey n)
     return DMatch(query, (int)(indexOf(n) - trains.start(image)), (int)image, (float)distanceOf(n));
 }
 
-//! Adds a row of the matches of a query; with `compact`, only if it has any.
+//! Adds a query's row of matches; with `compact`, only if it has any.
 void addMatches(const PackedCodes& trains, int query, const MatchKey* begin, const MatchKey* end,
         bool compact, std::vector<std::vector<DMatch>>& matches)
 {
@@ -75,7 +75,7 @@ public:
     void setThresholds(const std::vector<float>& thresholds) CV_OVERRIDE
     {
         for (float threshold : thresholds)
-            checkThreshold(threshold);  // also where no level needs one
+            checkThreshold(threshold);  // also for a single level, which uses none
         const bool one = thresholds.size() == 1;
         set(&MatcherParameters::thresholds,
                 one ? std::vector<float>(parameters.stages(), thresholds[0]) : thresholds);
@@ -158,8 +158,8 @@ public:
     void saveIndex(const String& filename) const CV_OVERRIDE
     {
         if (!index)
-            CV_Error(Error::StsBadArg, "There is nothing to save: a matcher without level sizes knows them "
-                                       "only after descriptors were added");
+            CV_Error(Error::StsBadArg,
+                    "There is nothing to save: add descriptors, or create the matcher with level sizes");
         saveCodes(filename, parameters, *index);
     }
 
@@ -213,11 +213,10 @@ private:
         MatcherParameters changed = parameters;
         changed.*member = value;
         check(changed);
-        std::swap(parameters, changed);  // which cannot fail half-way
+        std::swap(parameters, changed);
     }
 
-    //! Where there are no level sizes: an index for codes of that width, which holds the images without rows that
-    //! came before it.
+    //! For a matcher without level sizes: an index for codes of this width, with the images without rows so far.
     Ptr<PackedCodes> indexFor(int width) const
     {
         MatcherParameters complete = parameters;
@@ -234,7 +233,7 @@ private:
         return index ? index : indexFor(std::max(queries.cols, 1));
     }
 
-    //! Checked. The policy is that of the mode if it is THRESHOLD, else the given one.
+    //! Checks the arguments. The policy is that of THRESHOLD in this mode, else the given one.
     SearchInput inputFor(const PackedCodes& trains, const Mat& queries, InputArrayOfArrays masks,
             const PruningPolicy& policy) const
     {
@@ -255,8 +254,8 @@ private:
     }
 
     MatcherParameters parameters;
-    Ptr<PackedCodes> index;  //!< null while the width of codes is not known
-    Ptr<SearchCost> cost;    //!< shared with clones without train data, with which calls with two sets match
+    Ptr<PackedCodes> index;  //!< null while the width of codes is unknown
+    Ptr<SearchCost> cost;    //!< shared with clones without train data
 };
 
 }  // namespace
@@ -300,5 +299,4 @@ Ptr<HierarchicalMatcher> HierarchicalMatcher::loadIndex(const String& filename)
     return makePtr<HierarchicalMatcherImpl>(parameters, codes);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

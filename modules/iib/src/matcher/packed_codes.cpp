@@ -10,8 +10,7 @@
 #include "parameters.hpp"
 #include "search.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static const int CODES_PER_BLOCK = CodeLayout::CODES_PER_BLOCK;
 
@@ -52,7 +51,6 @@ static int blocksFor(size_t rows)
     return (int)blocks;
 }
 
-// The descriptors of codes from a row on.
 static void unpack(const CodeLayout& layout, const Mat& codes, size_t row, Mat& descriptors)
 {
     AutoBuffer<unsigned> plain(layout.words());
@@ -105,7 +103,7 @@ void PackedCodes::grow(int blocks)
     filled = blocks;
 }
 
-// Not by Mat::resize: when memory lacks, it leaves the matrix larger than its memory.
+// Mat::resize is not safe: if it runs out of memory, the matrix is larger than its memory.
 void PackedCodes::allocate(int blocks)
 {
     Mat larger(blocks, (int)format.blockWords(), CV_32S);
@@ -123,7 +121,7 @@ void PackedCodes::reserve(size_t images, size_t rows)
 
 void PackedCodes::add(const Mat& descriptors)
 {
-    // Whatever needs memory comes before the first change.
+    // everything that may throw comes before the first change
     if (starts.size() == starts.capacity())
         starts.reserve(2 * starts.size());
     grow(blocksFor(rows() + descriptors.rows));
@@ -185,5 +183,4 @@ void PackedCodes::findNearest(const std::vector<int>& levelSizes, const std::vec
         }
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -4,13 +4,12 @@
 
 #include "pair_scan.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
-/** The chunks of pairs that are scanned one after the other: some queries with all train codes in ascending order, then
-the next queries. Indices in `pairs` count from firstQuery and firstTrain. */
+/** Iterates over chunks of pairs: for some queries all train codes in ascending order, then the next queries. Indices in
+`pairs` count from firstQuery and firstTrain. */
 class PairChunks
 {
 public:
@@ -46,15 +45,15 @@ public:
         return true;
     }
 
-    //! What the first train code is called in results.
+    //! Index of the chunk's first train code in results.
     size_t firstIndex() const { return input.firstIndex + firstTrain; }
-    //! Of the policy, for each query of the chunk.
+    //! The policy's limit for each query of the chunk.
     int* limitsOfQueries() { return &limits[firstQuery - range.start]; }
 
     CodePairs pairs;
     int firstQuery;
     size_t firstTrain;
-    size_t pairCount;  //!< those that are not masked
+    size_t pairCount;  //!< without masked pairs
 
 private:
     //! Whether some pairs of the chunk may be left out.
@@ -67,7 +66,7 @@ private:
         return std::find(first, end, true) != end;
     }
 
-    //! Copies the masks of the chunk into rows of a whole number of CodeBlocks, and counts the pairs left.
+    //! Copies the chunk's masks into rows of whole CodeBlocks, and counts the pairs left.
     void fillFlags()
     {
         const PackedCodes& trains = input.trains;
@@ -101,7 +100,7 @@ private:
     std::vector<uchar> flags;
 };
 
-//! Calls found(query, train, distance) for the pairs of a chunk that are below a threshold, as HammingSink has them.
+//! Calls report(query, train, distance) for the pairs of a chunk that are below a threshold of HammingSink.
 template <class Found>
 void scanPruned(const SearchInput& input, PairChunks& chunk, const int* queryThresholds,
         const int* trainThresholds, const Found& report)
@@ -134,7 +133,7 @@ void scanPruned(const SearchInput& input, PairChunks& chunk, const int* queryThr
     input.cost.compared += alive * (8 * layout.bytes() - bits);
 }
 
-// For tables of one or two columns, the other one of a single column, without stages.
+// For queries with one or two neighbours, train codes with one, and no stages.
 void scanFew(const SearchInput& input, const PairChunks& chunk, KnnTable& forQueries, KnnTable* forTrains)
 {
     const NearestScan scan = {chunk.pairs, forQueries[chunk.firstQuery], forQueries.size(),
@@ -176,5 +175,4 @@ void scanWithin(
         });
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

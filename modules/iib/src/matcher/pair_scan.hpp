@@ -11,21 +11,18 @@
 #include <atomic>
 #include <new>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-//! Work of searches, in bits, to which any thread adds.
+//! Bits compared by searches, and bits that brute force would compare.
 struct SearchCost
 {
     std::atomic<uint64> compared{0}, all{0};
 };
 
-/** How many queries and CodeBlocks of train codes are scanned at once. The train codes of 170 bytes fill 352 KB, so
-that they stay in a second-level cache of 512 KB while the queries, 704 KB, pass by. Tests take fewer, so that small
-data crosses the boundaries. */
+/** Queries and CodeBlocks of train codes in a chunk. With 170 bytes a code, a chunk's train codes (352 KB) stay in a
+second-level cache of 512 KB. Tests use smaller chunks. */
 struct ScanChunk
 {
-    //! CodeBlocks that are scanned at once by a policy.
     int codeBlocksFor(const PruningPolicy& policy) const
     {
         return policy.margin >= 0 ? codeBlocksOfLimits : codeBlocks;
@@ -33,20 +30,19 @@ struct ScanChunk
     int queryCount = 4096, codeBlocks = 128, codeBlocksOfLimits = PruningPolicy::CODE_BLOCKS_OF_LIMITS;
 };
 
-//! What a search looks for and among which pairs.
 struct SearchInput
 {
     const PackedCodes& trains;
     Mat queries;               //!< CV_8U, as wide as the train codes
     PruningPolicy policy;      //!< made for the layout of the train codes
     std::vector<Mat> masks;    //!< none, or one for each image, empty or queries x rows(image)
-    std::vector<bool> hidden;  //!< of each image, whether its rows are left out; empty: none is
-    size_t firstIndex;         //!< what the first of the train codes is called in results
+    std::vector<bool> hidden;  //!< for each image, whether its rows are left out; empty: no image is
+    size_t firstIndex;         //!< index of the first train code in results
     ScanChunk chunk;
-    SearchCost& cost;  //!< what the search takes is added to it
+    SearchCost& cost;  //!< the search adds to it
 };
 
-//! A value for each of k neighbours of each row; throws StsNoMem, with k, if memory does not hold them.
+//! rows * k values; throws StsNoMem, with k in the message, if memory does not suffice.
 template <typename T> std::vector<T> forNeighbours(size_t rows, int k, T value)
 {
     try
@@ -62,11 +58,11 @@ template <typename T> std::vector<T> forNeighbours(size_t rows, int k, T value)
                                      k, (unsigned long long)rows));
 }
 
-//! The k nearest neighbours of each of many codes, in ascending order; NO_MATCH where there are fewer.
+//! The k nearest neighbours of each code, in ascending order; NO_MATCH where there are fewer.
 class KnnTable
 {
 public:
-    //! `padding` more entries are there for vectors that read thresholds() past the end.
+    //! @param padding further entries, since vectors read thresholds() past the end.
     KnnTable(size_t rows, int k_, size_t padding = 0)
         : k(k_), keys(forNeighbours(rows, k_, NO_MATCH)), nearest(rows + padding, INT_MAX)
     {
@@ -76,7 +72,7 @@ public:
     size_t rows() const { return keys.size() / k; }
     MatchKey* operator[](size_t row) { return &keys[row * k]; }
     const MatchKey* operator[](size_t row) const { return &keys[row * k]; }
-    //! For each row: a new neighbour with a higher index has to be nearer than this.
+    //! The distance of each row's k-th neighbour: a further neighbour must be nearer.
     const int* thresholds() const { return nearest.data(); }
     int* thresholds() { return nearest.data(); }
 
@@ -103,18 +99,17 @@ public:
 private:
     int k;
     std::vector<MatchKey> keys;
-    std::vector<int> nearest;  // distance of the k-th
+    std::vector<int> nearest;
 };
 
-/* One pass over all pairs of some queries with all train codes, chunk by chunk, on one thread. */
+/* One pass of some queries over all train codes, chunk by chunk, on one thread. */
 
-//! Puts the nearest into tables of all queries and of all train codes; forTrains is null when nobody asks for that
-//! direction, and else has room for whole CodeBlocks.
+//! Adds the nearest to the tables of all queries and of all train codes. forTrains is null if that direction is not needed,
+//! else it has room for whole CodeBlocks.
 void scanNearest(const SearchInput& input, const Range& queries, KnnTable& forQueries, KnnTable* forTrains);
 
 //! Adds the pairs within a radius to the list of each query, in the order of train codes.
 void scanWithin(const SearchInput& input, const Range& queries, int radius,
         std::vector<std::vector<MatchKey>>& lists);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

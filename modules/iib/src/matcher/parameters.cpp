@@ -6,8 +6,7 @@
 
 #include "../common/file_numbers.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 void checkThreshold(float threshold)
 {
@@ -74,7 +73,7 @@ Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes)
 
 template <typename T> static std::vector<T> readList(const FileNode& node, const char* key)
 {
-    // In XML, a list of one is that number, and an empty list a node without anything.
+    // XML has a list of one as a number, and an empty list as an empty node.
     if (!node.isSeq() && node.size() > 0)
         return std::vector<T>(1, numberOf<T>(node, key));
     std::vector<T> values;
@@ -109,5 +108,4 @@ MatcherParameters readParameters(const FileNode& node, const char* name, const M
     return p;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

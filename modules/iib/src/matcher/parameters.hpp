@@ -6,8 +6,7 @@
 
 #include "../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 struct MatcherParameters
 {
@@ -17,7 +16,7 @@ struct MatcherParameters
     bool crossCheck = false;
     float maxRatio = 1;
 
-    //! How many thresholds there have to be.
+    //! Number of thresholds.
     size_t stages() const { return std::max(levelSizes.size(), (size_t)1) - 1; }
 };
 
@@ -31,14 +30,13 @@ void check(const MatcherParameters& p);
 //! One matrix of descriptors, or several, of one image each.
 std::vector<Mat> imagesOf(InputArrayOfArrays descriptors);
 
-//! The descriptors if they are of `width` bytes each, 0 x width if there are none; throws otherwise. `byFirstCodes`
-//! tells the error where the width came from: from the codes that came first, or from level sizes.
+//! The descriptors; 0 x width if there are none. Throws unless each has `width` bytes.
+//! @param byFirstCodes for the error: the width comes from the first codes, not from level sizes.
 Mat checkedDescriptors(const Mat& descriptors, int width, bool byFirstCodes);
 
 void writeParameters(FileStorage& fs, const MatcherParameters& p);
-//! Those of a node that writeParameters filled, or of one that holds such a node under `name`, as Algorithm::save
-//! writes it. What the node does not have stays as it was; levelSizes it must have.
+//! Reads the node of writeParameters, or one that holds it under `name`, as Algorithm::save writes it. Missing parameters,
+//! except levelSizes, keep the values of `before`.
 MatcherParameters readParameters(const FileNode& node, const char* name, const MatcherParameters& before);
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

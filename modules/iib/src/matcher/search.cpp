@@ -6,15 +6,15 @@
 
 #include <mutex>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
-//! Cuts queries in parts, which threads scan. `scan` takes a Range of queries.
+//! Calls scan(Range of queries) for parts of the queries, in parallel.
 template <class Scan> void scanInParts(int queries, int parts, const Scan& scan)
 {
-    const int size = std::max((queries + parts - 1) / parts, 4);  // a tile's queries
+    const int size =
+            std::max((queries + parts - 1) / parts, 4);  // kernels compare up to 4 queries or more at a time
     const int count = (queries + size - 1) / size;
     const auto scanSome = [&](const Range& some) {
         scan(Range(some.start * size, std::min(some.end * size, queries)));
@@ -22,7 +22,7 @@ template <class Scan> void scanInParts(int queries, int parts, const Scan& scan)
     parallel_for_(Range(0, count), scanSome, count);
 }
 
-// Some parts for each thread, so that all are done at about the same time.
+// At least two parts for each thread, so that threads end at about the same time.
 int evenParts(const SearchInput& input)
 {
     const int chunks = (input.queries.rows + input.chunk.queryCount - 1) / input.chunk.queryCount,
@@ -30,8 +30,8 @@ int evenParts(const SearchInput& input)
     return std::max((chunks + threads - 1) / threads, 2) * threads;
 }
 
-// In the other direction each part has neighbours of its own, merged by their order, so that the result does not depend
-// on which is done first. Few parts, since each begins without thresholds.
+// Each part has a table of its own for train codes. They are merged by keys, so the order of parts does not matter. Parts are
+// few, since each begins without thresholds.
 void addNearestOfBoth(const SearchInput& input, KnnTable& forQueries, KnnTable& forTrains)
 {
     std::mutex lock;
@@ -43,7 +43,6 @@ void addNearestOfBoth(const SearchInput& input, KnnTable& forQueries, KnnTable& 
     });
 }
 
-// Leaves the pairs that are among the nearest in both directions.
 void keepMutual(KnnTable& forQueries, const KnnTable& forTrains)
 {
     for (size_t query = 0; query < forQueries.rows(); query++)
@@ -59,13 +58,13 @@ void keepMutual(KnnTable& forQueries, const KnnTable& forTrains)
     }
 }
 
-// The number meant by a float such as .6f is within FLT_EPSILON of it, so that what ties by that number does not pass.
+// The decimal number behind a float such as .6f differs by up to FLT_EPSILON from it: ties at the decimal number fail.
 bool passesRatio(const MatchKey* row, float maxRatio)
 {
     return row[1] == NO_MATCH || distanceOf(row[0]) < maxRatio * (1. - FLT_EPSILON) * distanceOf(row[1]);
 }
 
-// The first k of each row that passes the ratio test; the others stay empty.
+// Rows that fail the ratio test become empty.
 KnnTable afterRatio(const KnnTable& found, int k, float maxRatio)
 {
     KnnTable result(found.rows(), k);
@@ -75,7 +74,7 @@ KnnTable afterRatio(const KnnTable& found, int k, float maxRatio)
     return result;
 }
 
-//! Random differences of n bits spread by sqrt(n) / 2 around n / 2.
+//! The standard deviation of the distance between random codes of n bits.
 double spread(int bits) { return std::sqrt((double)bits) / 2; }
 
 }  // namespace
@@ -102,7 +101,7 @@ std::vector<Mat> checkedMasks(InputArrayOfArrays masks_, int queries, const Pack
     return any ? masks : std::vector<Mat>();
 }
 
-// One stage, as soon as most pairs are beyond the radius; none where that is late or never.
+// One stage, as soon as most random pairs are beyond the radius; none if that is late.
 PruningPolicy radiusPolicy(const CodeLayout& layout, int radius)
 {
     PruningPolicy policy;
@@ -113,7 +112,7 @@ PruningPolicy radiusPolicy(const CodeLayout& layout, int radius)
     return policy;
 }
 
-// The number meant by a float such as .35f is within FLT_EPSILON of it, so that what ties by that number passes.
+// As in passesRatio(), but ties at the decimal number pass.
 PruningPolicy thresholdPolicy(const CodeLayout& layout, const std::vector<float>& thresholds)
 {
     PruningPolicy policy;
@@ -141,7 +140,6 @@ void addNearest(const SearchInput& input, KnnTable& forQueries)
 
 KnnTable findNearest(const SearchInput& input, int k, bool mutual, float maxRatio)
 {
-    // Each direction has as many neighbours as the other side has codes, at most.
     const size_t trains = input.trains.rows();
     const int queries = input.queries.rows, backK = std::min(k, std::max(queries, 1));
     k = (int)std::min((size_t)k, std::max(trains, (size_t)1));
@@ -177,5 +175,4 @@ std::vector<std::vector<MatchKey>> findWithin(const SearchInput& input, int radi
     return result;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -8,8 +8,7 @@
 
 #include <array>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -22,8 +21,8 @@ struct Blurs
 {
     int levels, passes, weight;
 
-    /* Halving and interpolating between sizes adds 3/4 + 3/4 of a squared pixel of the larger, so that all levels add
-     (4^levels - 1) / 2; a pass adds weight / 128, and weights above 256 / 3 have more than one peak. */
+    /* Halving and interpolating add 3/4 of a squared pixel each, in pixels of the larger size: all levels add
+     (4^levels - 1) / 2. A pass adds weight / 128. Weights above 256 / 3 would have more than one peak. */
     explicit Blurs(double sigma) : levels(std::max((int)std::floor(std::log2(sigma)), 1))
     {
         const double scale = std::pow(4., levels);
@@ -33,7 +32,7 @@ struct Blurs
     }
 };
 
-const double ROWS_OF_A_THREAD = 64;  // fewer cost more to hand out than to make
+const double ROWS_OF_A_THREAD = 64;  // fewer rows are not worth a thread
 
 class Normalizer
 {
@@ -67,12 +66,12 @@ public:
 private:
     template <typename T> using FourRows = std::array<const T*, 4>;
 
-    //! Rows that a thread works on.
+    //! Rows of a thread.
     struct Scratch
     {
-        PaddedRows<short> window;        //!< the last four that were made
-        PaddedRows<short> row, between;  //!< one, and one of half as many values
-        int next;                        //!< the first that was not made yet
+        PaddedRows<short> window;        //!< the last four rows
+        PaddedRows<short> row, between;  //!< a row, and one with half as many values
+        int next;                        //!< the next row of `window` to make
 
         explicit Scratch(Size size)
             : window(Size(size.width + 1, 4)), row(Size(size.width + 1, 1)), between(Size(size.width + 1, 1)),
@@ -94,7 +93,7 @@ private:
                 rows / ROWS_OF_A_THREAD);
     }
 
-    //! Row y of what is normalized, at `out`.
+    //! Row y of the image.
     void readRow(int y, short* out) const
     {
         if (grey.depth() == CV_8U)
@@ -113,7 +112,7 @@ private:
         kernels.subtract(out, mean, out, size.width);
     }
 
-    //! The rows around row y of half the size, by make(row, out). Calls come in the order of y.
+    //! The rows around row y of half the size, computed by make(row, out). Calls come in the order of y.
     template <typename Make> FourRows<short> rowsAround(int y, Scratch& scratch, const Make& make) const
     {
         FourRows<short> rows;
@@ -149,7 +148,7 @@ private:
         return upsampled(std::move(smallest), blurs.levels);
     }
 
-    //! What differences are multiplied by, at half the image's size.
+    //! The factors of differences, at half the image's size.
     PaddedRows<short> gainsAtHalf(const PaddedRows<short>& means) const
     {
         PaddedRows<int> halves(sizes[1]);
@@ -168,7 +167,7 @@ private:
 
     static int within(int y, int height) { return std::min(std::max(y, 0), height - 1); }
 
-    //! The rows of which row y of half the plane's size is made.
+    //! The rows that row y of half the plane's size depends on.
     template <typename T> static FourRows<T> rowsAround(const PaddedRows<T>& plane, int y)
     {
         FourRows<T> rows;
@@ -232,14 +231,13 @@ private:
     const NormalizationKernels& kernels;
     const Mat& grey;
     const Blurs blurs;
-    const Size size;          //!< of what is normalized
-    std::vector<Size> sizes;  //!< that, half of it, and so on
-    int64 factor;             //!< of 16-bit pixels, in 2^-16
+    const Size size;          //!< of the image
+    std::vector<Size> sizes;  //!< of all levels, the largest first
+    int64 factor;             //!< for 16-bit pixels, in 2^-16
 };
 
 }  // namespace
 
 Mat normalizeLocally(const Mat& grey, double sigma) { return Normalizer(grey, sigma).run(); }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -8,17 +8,16 @@
 #include "../common/image_input.hpp"
 #include "../normalization/local_normalization.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
 const double NORMALIZATION_SIGMA = 8;
 const double LARGEST_SPACING = 1.25;  //!< pixels from one sample to the next
 const double SAME_SIZE = 1.1;
-const int SAME_TURN = 10;           //!< degrees: patches that are turned by less agree without that
-const size_t VOTING_MATCHES = 64;   //!< for the turn, each with each other
-const double LEAST_WITH_WARP = .4;  //!< similarity at the start: most tries are wrong, and end here
+const int SAME_ROTATION = 10;              //!< degrees: smaller rotations need no start place of their own
+const size_t VOTING_MATCHES = 64;          //!< for the rotation; every two of them vote
+const double LEAST_START_SIMILARITY = .4;  //!< of guided matches, most of which are wrong and end here
 const double MATCHES_OF_A_THREAD = 8;
 
 Mat checked(InputArray image, const char* name)
@@ -42,14 +41,13 @@ bool hasAngle(const KeyPoint& keypoint) { return keypoint.angle >= 0; }
 
 }  // namespace
 
-//! Where a match begins: what PatchAligner asks for.
+//! The arguments of PatchAligner for a match.
 struct MatchRefiner::Start
 {
     double unit, least;
     PatchPlaces places;
 
-    /* Neighbouring samples are farther apart than a pixel only if that is by little, in the second image of a pair of
-     about the same size. */
+    //! @param ratio scale from the first image to the second. Samples are at most LARGEST_SPACING apart in the second.
     Start(double ratio, double leastSimilarity)
         : unit(std::min(1., LARGEST_SPACING / ratio)), least(leastSimilarity)
     {
@@ -72,7 +70,7 @@ PreparedPair::PreparedPair(InputArray image1, InputArray image2, const std::vect
             images[i] = PreparedImage(pixels[i]);
     };
     if (getNumThreads() > 2)
-        prepare(Range(0, 2));  // each by all threads
+        prepare(Range(0, 2));  // one image after the other, on all threads
     else
         parallel_for_(Range(0, 2), prepare);
 }
@@ -89,11 +87,11 @@ MatchRefiner::MatchRefiner(const PreparedImage& image1, const PreparedImage& ima
         checkIndex(first, match.queryIdx, 1);
         checkIndex(second, match.trainIdx, 2);
     }
-    turn = turnOf(matches);
+    rotation = rotationOf(matches);
 }
 
-//! Whole degrees; 0 where nothing tells.
-int MatchRefiner::turnOf(const std::vector<DMatch>& matches) const
+//! Whole degrees; 0 without votes.
+int MatchRefiner::rotationOf(const std::vector<DMatch>& matches) const
 {
     std::vector<const DMatch*> voting;
     for (const DMatch& match : matches)
@@ -114,32 +112,32 @@ int MatchRefiner::turnOf(const std::vector<DMatch>& matches) const
     return std::max(cvRound(votes.peak()), 0);
 }
 
-//! Sizes of keypoints err by more than a tenth, so that patches may also be of the same size.
+//! Sizes of keypoints err by more than a tenth, so equal sizes are a start place as well.
 MatchRefiner::Start MatchRefiner::begin(const Refinement& refinement) const
 {
     const KeyPoint &a = first[refinement.match.queryIdx], &b = second[refinement.match.trainIdx];
     const Vec2d place(b.pt.x, b.pt.y);
     if (refinement.guided)
     {
-        Start start(std::sqrt(std::abs(determinant(refinement.warp))), LEAST_WITH_WARP);
+        Start start(std::sqrt(std::abs(determinant(refinement.warp))), LEAST_START_SIMILARITY);
         start.places.add({place, refinement.warp * start.unit});
         return start;
     }
     const double ratio = (double)b.size / a.size;
     Start start(ratio, 0);
-    const auto addTurned = [&](float degrees) {
-        const Rotation rotation(degrees);
+    const auto addRotated = [&](float degrees) {
+        const Rotation angle(degrees);
         const auto add = [&](double scale) {
-            const double c = scale * start.unit * rotation.cosine, s = scale * start.unit * rotation.sine;
+            const double c = scale * start.unit * angle.cosine, s = scale * start.unit * angle.sine;
             start.places.add({place, Matx22d(c, -s, s, c)});
         };
         add(ratio);
         if (std::max(ratio, 1 / ratio) >= SAME_SIZE)
             add(1);
     };
-    addTurned(hasAngle(a) || hasAngle(b) ? std::max(b.angle, 0.f) - std::max(a.angle, 0.f) : 0);
-    if (!hasAngle(a) && !hasAngle(b) && std::min(turn, 360 - turn) >= SAME_TURN)
-        addTurned((float)turn);
+    addRotated(hasAngle(a) || hasAngle(b) ? std::max(b.angle, 0.f) - std::max(a.angle, 0.f) : 0);
+    if (!hasAngle(a) && !hasAngle(b) && std::min(rotation, 360 - rotation) >= SAME_ROTATION)
+        addRotated((float)rotation);
     return start;
 }
 
@@ -152,7 +150,7 @@ bool MatchRefiner::isInside(const KeyPoint& keypoint, const Mat& image)
 bool MatchRefiner::mayMatch(int query, int train, const Matx22d& warp) const
 {
     const Point2f a = first[query].pt, b = second[train].pt;
-    return mayAgree(images[0].pixels, Vec2d(a.x, a.y), images[1].pixels, Vec2d(b.x, b.y), warp);
+    return roughlyAgree(images[0].pixels, Vec2d(a.x, a.y), images[1].pixels, Vec2d(b.x, b.y), warp);
 }
 
 void MatchRefiner::refine(std::vector<Refinement>& matches) const
@@ -161,7 +159,7 @@ void MatchRefiner::refine(std::vector<Refinement>& matches) const
             Range(0, (int)matches.size()),
             [&](const Range& range) {
                 PatchAligner aligner;
-                int taken = -1;  // tries of one keypoint follow each other
+                int last = -1;  // matches of one keypoint follow each other and share its template
                 double unit = 0;
                 for (int i = range.start; i < range.end; i++)
                 {
@@ -171,10 +169,10 @@ void MatchRefiner::refine(std::vector<Refinement>& matches) const
                     r.found = {false, start.places.begin()->centre, -1, Matx22d::eye(), Matx22d::eye()};
                     if (!seesFirst(query) || !seesSecond(r.match.trainIdx))
                         continue;
-                    if (query != taken || start.unit != unit)
-                        aligner.take(
+                    if (query != last || start.unit != unit)
+                        aligner.setTemplate(
                                 images[0].pixels, Vec2d(first[query].pt.x, first[query].pt.y), start.unit);
-                    taken = query;
+                    last = query;
                     unit = start.unit;
                     r.found = aligner.align(images[1].pixels, start.places, start.least);
                 }
@@ -182,5 +180,4 @@ void MatchRefiner::refine(std::vector<Refinement>& matches) const
             matches.size() / MATCHES_OF_A_THREAD);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -8,14 +8,13 @@
 
 #include "opencv2/iib/detail/prepared_image.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-//! A match to be refined, and what was found.
+//! A match to refine, and its result.
 struct Refinement
 {
     DMatch match;
-    bool guided;  //!< whether the search begins with `warp`, and not with what the keypoints' angles and sizes say
+    bool guided;   //!< whether the search begins with `warp`, not with the keypoints' angles and sizes
     Matx22d warp;  //!< from the first image's surroundings of the keypoint to the second's
     PatchAlignment found;
 
@@ -29,35 +28,39 @@ struct Refinement
 class MatchRefiner
 {
 public:
-    //! Refuses what is not a match of these keypoints.
+    //! @throws cv::Exception for keypoints that are not finite and for matches of others.
     MatchRefiner(const PreparedImage& image1, const PreparedImage& image2,
             const std::vector<KeyPoint>& keypoints1, const std::vector<KeyPoint>& keypoints2,
             const std::vector<DMatch>& matches);
 
     void refine(std::vector<Refinement>& matches) const;
 
-    //! Whether a match may be one, after a coarse look. @param warp as in Refinement.
+    //! Whether a coarse comparison allows a match. @param warp as in Refinement.
     bool mayMatch(int query, int train, const Matx22d& warp) const;
 
     Size firstSize() const { return images[0].pixels.size(); }
     Size secondSize() const { return images[1].pixels.size(); }
-    //! Whether the image has the surroundings of its keypoint.
+    //! Whether a keypoint lies inside its image.
     bool seesFirst(size_t index) const { return isInside(first[index], images[0].pixels); }
     bool seesSecond(size_t index) const { return isInside(second[index], images[1].pixels); }
 
 private:
     struct Start;
 
-    int turnOf(const std::vector<DMatch>& matches) const;
+    int rotationOf(const std::vector<DMatch>& matches) const;
     Start begin(const Refinement& refinement) const;
     static bool isInside(const KeyPoint& keypoint, const Mat& image);
 
     const std::vector<KeyPoint>&first, &second;
     const PreparedImage images[2];
-    int turn;  //!< of the second image, as the given matches of keypoints without angles tell it; degrees, to 360
+    int rotation;  //!< estimated from the given matches of keypoints without angles; degrees, 0 to 360
 };
 
-//! The images of a pair, prepared by two threads, after both were checked; empty without matches, when nothing looks at them.
+//! Adds the matches of further keypoints that the refined matches predict.
+void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoints1,
+        const std::vector<KeyPoint>& keypoints2, std::vector<Refinement>& matches);
+
+//! The images of a pair, checked and prepared; empty without matches.
 struct PreparedPair
 {
     PreparedImage images[2];
@@ -65,5 +68,4 @@ struct PreparedPair
     PreparedPair(InputArray image1, InputArray image2, const std::vector<DMatch>& matches);
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -4,8 +4,7 @@
 
 #include "patch_aligner.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -13,18 +12,18 @@ const double SIGMA = 8;            //!< of the weights, in units of the patch
 const double UNITS_OF_PLACE = 16;  //!< of PatchWeights::x and y
 const double REACH = PATCH - 1;    //!< from the centre to the outermost samples
 const int MOST_STEPS = 10;
-const double LAST_STEP = .02;            //!< in units: the last step is not longer
-const double LARGEST_MOVE = 2;           //!< in pixels
-const double MARGIN = LARGEST_MOVE + 4;  //!< pixels that a patch may reach farther than where it starts
-const double LEAST_DEVIATION = .5;  //!< normalized grey levels: without contrast there is nothing to match
-const double LEAST_SIMILARITY = .5;
-const double LEAST_AT_A_LOOK = .3;  //!< similarity of few pixels: see mayAgree()
-const double LEAST_UNDERWAY = .5;   //!< similarity of a guided try after STEPS_OF_A_TRY
-const int STEPS_OF_A_TRY = 3;
-const double HALVED = 1 << (WEIGHT_BITS + 1);     //!< halved weights' unit over that of the sum of samples
-const double LIGHT = .06, SHARED_BY_NOISE = .28;  //!< of errors by other light: see covariance()
-const double NOISE_BY_CHANCE = 1.15;              //!< over its mean, so that it is not taken for what is seen
-const double LEAST_SIGNAL = .1;                   //!< in what a patch seems to tell
+const double LAST_STEP = .02;               //!< steps end when one is shorter than this many units
+const double LARGEST_MOVE = 2;              //!< in pixels
+const double MARGIN = LARGEST_MOVE + 4;     //!< pixels of the window beyond the start patch
+const double LEAST_DEVIATION = .5;          //!< contrast of a patch, in normalized grey levels
+const double LEAST_SIMILARITY = .5;         //!< of accepted matches
+const double LEAST_COARSE_SIMILARITY = .3;  //!< see roughlyAgree()
+const double LEAST_GUIDED_SIMILARITY = .5;  //!< of a guided match after GUIDED_STEPS
+const int GUIDED_STEPS = 3;
+const double HALVED = 1 << (WEIGHT_BITS + 1);     //!< unit of halved weights, relative to the sum of samples
+const double LIGHT = .06, SHARED_BY_NOISE = .28;  //!< of errors by changed illumination, see covariance()
+const double NOISE_MARGIN = 1.15;                 //!< noise is counted this much above its mean
+const double LEAST_SIGNAL = .1;                   //!< least share of the normal matrix that is not noise
 const double DAMPING_OF_PLACE = 1e-5, DAMPING_OF_WARP = 5e-3;
 
 PatchWeights makeWeights()
@@ -73,15 +72,15 @@ bool invert(Matx66d& m)
     return true;
 }
 
-//! How far a patch reaches from its centre, in x and in y.
+//! Half the width and height of a patch, in pixels.
 Vec2d reachOf(const Matx22d& warp)
 {
     return Vec2d(std::abs(warp(0, 0)) + std::abs(warp(0, 1)), std::abs(warp(1, 0)) + std::abs(warp(1, 1))) *
            REACH;
 }
 
-/* How much larger the variance of a sum of residuals times derivatives is than if they were independent, if the
- correlations of both fall by the same factor from sample to sample along rows and columns (Bartlett 1946). */
+/* Variance of a sum of residuals times derivatives, relative to that of independent ones. Both correlations are assumed
+ to fall by a constant factor from sample to sample along rows and columns (Bartlett 1946). */
 double inflation(const Autocorrelation& a, const Autocorrelation& b)
 {
     const double squares = (a.squares + 1.) * (b.squares + 1.);
@@ -89,13 +88,13 @@ double inflation(const Autocorrelation& a, const Autocorrelation& b)
     return (1 + right) / (1 - right) * (1 + below) / (1 - below);
 }
 
-//! The pixels from a place on of an image with a border, which the place may be in.
+//! The pixels from a place on; the place may lie in the border around the image.
 const uchar* pixelsFrom(const Mat& image, const Point& place)
 {
     return image.data + place.y * (ptrdiff_t)image.step + place.x;
 }
 
-//! TEMPLATE x TEMPLATE grey levels between pixels, `unit` apart.
+//! TEMPLATE x TEMPLATE interpolated grey levels, `unit` pixels apart.
 void resample(const Mat& image, const Vec2d& first, double unit, uchar* values)
 {
     const Point corner(cvFloor(first[0]), cvFloor(first[1]));
@@ -147,33 +146,33 @@ Mat preparedForAlignment(const Mat& normalized)
     return result(inner);
 }
 
-bool mayAgree(
+bool roughlyAgree(
         const Mat& image1, const Vec2d& point1, const Mat& image2, const Vec2d& point2, const Matx22d& warp)
 {
-    const int corner = -LOOK_APART * (LOOK - 1) / 2;
+    const int corner = -COARSE_STEP * (COARSE_PIXELS - 1) / 2;
     const Vec2d reach = reachOf(warp);
     if (!(std::max(reach[0], reach[1]) < IMAGE_BORDER - 2))
-        return true;  // it is more than the borders of images hold
+        return true;  // the patch reaches beyond the borders of images
     const Point centre1(cvRound(point1[0]), cvRound(point1[1]));
     const Vec2d centre2 = point2 + warp * (Vec2d(centre1.x, centre1.y) - point1);
     const auto fixed = [](double value) { return cvRound(value * (1 << POSITION_BITS)); };
     const Point base(cvFloor(centre2[0]), cvFloor(centre2[1])),
             half(1 << (POSITION_BITS - 1), 1 << (POSITION_BITS - 1));
-    Point rows[LOOK];
-    for (int y = 0; y < LOOK; y++)
+    Point rows[COARSE_PIXELS];
+    for (int y = 0; y < COARSE_PIXELS; y++)
     {
-        const Vec2d begin = warp * Vec2d(corner, corner + LOOK_APART * y);
+        const Vec2d begin = warp * Vec2d(corner, corner + COARSE_STEP * y);
         rows[y] = Point(fixed(centre2[0] - base.x + begin[0]), fixed(centre2[1] - base.y + begin[1])) + half;
     }
-    const LookSums s = refinementKernels().look(pixelsFrom(image1, centre1 + Point(corner, corner)),
+    const CoarseSums s = refinementKernels().coarseSums(pixelsFrom(image1, centre1 + Point(corner, corner)),
             image1.step, pixelsFrom(image2, base), image2.step, rows,
-            Point(fixed(warp(0, 0) * LOOK_APART), fixed(warp(1, 0) * LOOK_APART)));
-    const double all = LookSums::WEIGHTS;
+            Point(fixed(warp(0, 0) * COARSE_STEP), fixed(warp(1, 0) * COARSE_STEP)));
+    const double all = CoarseSums::WEIGHTS;
     const double covariance = s.products * all - s.first * (double)s.second;
     const double variance1 = s.firstSquares * all - s.first * (double)s.first;
     const double variance2 = s.secondSquares * all - s.second * (double)s.second;
-    return covariance > 0 &&
-           covariance * covariance >= LEAST_AT_A_LOOK * LEAST_AT_A_LOOK * variance1 * variance2;
+    return covariance > 0 && covariance * covariance >= LEAST_COARSE_SIMILARITY * LEAST_COARSE_SIMILARITY *
+                                                                variance1 * variance2;
 }
 
 PatchAligner::PatchAligner()
@@ -193,8 +192,7 @@ PatchAligner::PatchAligner()
         squaredPlace += weights.gaussian[i] / total * weights.x[i] * weights.x[i] / (1 << 30);
 }
 
-/* Reads the patch around a point. Pixels that need no interpolation are taken if that is a unit's size: returned is how
- far the point is from the patch's centre then. */
+//! Reads the patch around a point: whole pixels if the unit is one. @return the point's offset from the patch's centre.
 Vec2d PatchAligner::readTemplate(const Mat& image, const Vec2d& point)
 {
     if (unit == 1)
@@ -212,7 +210,6 @@ Vec2d PatchAligner::readTemplate(const Mat& image, const Vec2d& point)
     return Vec2d(0, 0);
 }
 
-//! The surroundings of a place.
 void PatchAligner::readWindow(const Mat& image, const PatchPlace& place)
 {
     const Vec2d reach = reachOf(place.warp);
@@ -227,14 +224,14 @@ void PatchAligner::readWindow(const Mat& image, const PatchPlace& place)
 bool PatchAligner::sampleAt(const PatchPlace& place)
 {
     const Vec2d centre = place.centre - Vec2d(pixels.x, pixels.y);
-    const Vec2d reach = reachOf(place.warp) + Vec2d(.01, .01);  // for roundings of positions
+    const Vec2d reach = reachOf(place.warp) + Vec2d(.01, .01);  // positions are rounded
     if (!(centre[0] >= reach[0] && centre[0] + reach[0] < pixels.width && centre[1] >= reach[1] &&
                 centre[1] + reach[1] < pixels.height))
         return false;
     const auto fixed = [](const Vec2d& v) {
         return Point(cvRound(v[0] * (1 << POSITION_BITS)), cvRound(v[1] * (1 << POSITION_BITS)));
     };
-    const int half = 1 << (POSITION_BITS - 9);  // of the parts of a pixel that are read
+    const int half = 1 << (POSITION_BITS - 9);  // samples use 2^-8 pixels
     const PatchGrid grid = {fixed(centre - place.warp * Vec2d(REACH, REACH)) + Point(half, half),
             fixed(place.warp * Vec2d(2, 0)), fixed(place.warp * Vec2d(0, 2))};
     kernels.sample(window.data(), grid, samples.data());
@@ -255,7 +252,7 @@ PatchAligner::Moments PatchAligner::momentsOf(const short* values) const
     return moments;
 }
 
-//! The correlation with the template; 0 without contrast.
+//! Correlation with the template; 0 without contrast.
 double PatchAligner::similarityOf(const Moments& moments) const
 {
     if (!(moments.deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS)))
@@ -264,7 +261,7 @@ double PatchAligner::similarityOf(const Moments& moments) const
            (ofTemplate.sums[SUM_TEMPLATE] * moments.deviation);
 }
 
-//! Of the template; its sums are known then.
+//! Also computes the template's sums.
 bool PatchAligner::hasContrast()
 {
     int sums[SUMS];
@@ -274,7 +271,7 @@ bool PatchAligner::hasContrast()
     return ofTemplate.deviation >= LEAST_DEVIATION * (1 << SAMPLE_BITS) && ofTemplate.sums[SUM_TEMPLATE] > 0;
 }
 
-//! False where the template cannot tell a place. Most tries end before they ask.
+//! Inverts the normal matrix, once; most matches are refused before. @return false for a degenerate template.
 bool PatchAligner::solve()
 {
     if (solved)
@@ -288,7 +285,7 @@ bool PatchAligner::solve()
     for (int i = 0; i < PARAMETERS; i++)
         for (int j = 0; j <= i; j++)
         {
-            // less what changes of brightness and of contrast explain, which are solved for as well
+            // brightness and contrast are solved for as well: their share is subtracted
             const double square = products[i][j] * (j < 2 ? 1. : 2.) * scale;
             const double mean = totals[SUM_DERIVATIVES + i] * totals[SUM_DERIVATIVES + j] * scale * scale;
             const double explained = contrast[i] * contrast[j] * HALVED * HALVED * variance;
@@ -299,7 +296,7 @@ bool PatchAligner::solve()
     return usable = invert(inverse);
 }
 
-//! A step of Gauss and Newton: changes of the six parameters of the patch.
+//! A Gauss-Newton step: changes of the six parameters.
 Vec6d PatchAligner::step(const Moments& moments) const
 {
     const double factor = HALVED / (ofTemplate.deviation * moments.deviation);
@@ -311,8 +308,8 @@ Vec6d PatchAligner::step(const Moments& moments) const
     return inverse * gradient;
 }
 
-/* How far the interpolation of samples has moved the patch. Between two pixels, a part p from one to the next, a wave of
- frequency w seems p (1 - p) (1 - 2p) w^2 / 6 less far along. Some samples around the centre tell the mean. */
+/* The shift of the patch that bilinear interpolation causes. At a fraction p between two pixels, a wave of frequency w
+ is shifted by p (1 - p) (1 - 2p) w^2 / 6. The mean is taken over 4 x 4 samples. */
 Vec2d PatchAligner::interpolationError(const PatchPlace& place) const
 {
     const int places[] = {-9, -3, 3, 9};
@@ -328,7 +325,7 @@ Vec2d PatchAligner::interpolationError(const PatchPlace& place) const
             }
         }
     const double pixelsOfUnits = std::abs(determinant(place.warp));  // squared
-    const auto squaredFrequency = [&](ptrdiff_t next) {  // of the waves that tell a place along a direction
+    const auto squaredFrequency = [&](ptrdiff_t next) {              // weighted by contrast along a direction
         const SquaredDifferences squares = kernels.squareDifferences(pixels1, step1, next);
         return squares.second / (squares.first + 1.);
     };
@@ -336,10 +333,10 @@ Vec2d PatchAligner::interpolationError(const PatchPlace& place) const
            (1 / (6 * pixelsOfUnits));
 }
 
-/* The covariance of a point, of residuals with variance 1, if the normal matrix had no noise. The template's own is in its
- derivatives, and adds to their squares as if it told a place: on a straight edge nothing else does, along it.
- @param noise variance in the template's samples.
- @param ofResiduals tells how alike the noise of neighbours is, and so that of differences. */
+/* The covariance of a point for residuals of variance 1, corrected for noise in the normal matrix. Noise of the template
+ adds to the squares of its derivatives. Along a straight edge, the normal matrix holds nothing but noise.
+ @param noise variance of the template's samples.
+ @param ofResiduals estimates how noise correlates among neighbours. */
 Matx22d PatchAligner::withoutNoise(const Matx22d& ofPoint, const Matx<double, 6, 2>& ofParameters,
         double noise, const Autocorrelation& ofResiduals) const
 {
@@ -353,7 +350,7 @@ Matx22d PatchAligner::withoutNoise(const Matx22d& ofPoint, const Matx<double, 6,
         for (int j = 0; j < 2; j++)
             for (int k = 0; k < 2; k++)
                 sum(j, k) += ofParameters(i, j) * inDerivatives[i] * ofParameters(i, k);
-    // of noise in what the patch tells; by its eigenvalues errors are larger
+    // share of noise in the normal matrix; its eigenvalues say how much larger errors are
     const Matx22d share = sum * ofPoint.inv();
     const double mean = trace(share) / 2;
     const double apart = std::sqrt(std::max(mean * mean - determinant(share), 0.));
@@ -364,9 +361,8 @@ Matx22d PatchAligner::withoutNoise(const Matx22d& ofPoint, const Matx<double, 6,
     return factor * ofPoint * factor.t();
 }
 
-/* The point's covariance, from the residuals of the samples that were taken last. As far as these are noise, it is that of
- a sum of so many. Light that comes from elsewhere leaves residuals that neighbours share: then it is also what was
- measured on photographs of still cameras by other lamps. */
+/* The point's covariance, from the residuals of the last samples. Independent residuals count as noise. Residuals that
+ neighbours share come from changed illumination: LIGHT was measured for them, on photographs of still cameras. */
 Matx22d PatchAligner::covariance(const Moments& moments) const
 {
     const double similarity = std::min(similarityOf(moments), 1.);
@@ -376,13 +372,12 @@ Matx22d PatchAligner::covariance(const Moments& moments) const
     short residuals[PATCH_SAMPLES];
     kernels.subtract(samples.data(), weights, patch, fixedGain, fixedOffset, residuals);
     const Autocorrelation ofResiduals = kernels.autocorrelate(residuals);
-    const double x = beside[0] / UNITS_OF_PLACE, y = beside[1] / UNITS_OF_PLACE;
+    const double x = pointOffset[0] / UNITS_OF_PLACE, y = pointOffset[1] / UNITS_OF_PLACE;
     const Matx<double, 2, 6> ofPoint(1, 0, x, y, 0, 0, 0, 1, 0, 0, x, y);
     const Matx<double, 6, 2> ofParameters = inverse * ofPoint.t();
     const Matx22d ofUnit = ofPoint * ofParameters;
-    // squared, in parts of what the template explains
-    const double remaining = 1 / (similarity * similarity) - 1;
-    const double greyLevel = (1 << SAMPLE_BITS) / moments.deviation;  // both images are rounded to whole ones
+    const double remaining = 1 / (similarity * similarity) - 1;  // residual variance over explained variance
+    const double greyLevel = (1 << SAMPLE_BITS) / moments.deviation;  // both images are rounded to it
     const double noise = std::max(remaining, greyLevel * greyLevel / 6) / independentSamples;
     const auto scaleOf = [&](int derivative) {
         const Autocorrelation a = kernels.autocorrelate(patch.weights[1 + derivative]);
@@ -392,16 +387,16 @@ Matx22d PatchAligner::covariance(const Moments& moments) const
     const double shared = (ofResiduals.right + ofResiduals.below) / (2 * (ofResiduals.squares + 1.));
     const double sharedByLight = std::max(shared - SHARED_BY_NOISE, 0.);
     const double light = LIGHT * sharedByLight * std::sqrt(remaining * trace(ofUnit) / 2);
-    // both images have their noise; what neighbours share is of light
-    const double ofTemplateAlone = NOISE_BY_CHANCE * (1 - similarity) * std::max(1 - 2 * sharedByLight, 0.);
+    // both images have noise; residuals that neighbours share are none
+    const double ofTemplateAlone = NOISE_MARGIN * (1 - similarity) * std::max(1 - 2 * sharedByLight, 0.);
     const Matx22d ofSignal = withoutNoise(ofUnit, ofParameters, ofTemplateAlone, ofResiduals);
     return scale * ofSignal * scale * noise + ofUnit * light;
 }
 
-void PatchAligner::take(const Mat& image1, const Vec2d& point, double unitOfPatch)
+void PatchAligner::setTemplate(const Mat& image1, const Vec2d& point, double unitOfPatch)
 {
     unit = unitOfPatch;
-    beside = readTemplate(image1, point);
+    pointOffset = readTemplate(image1, point);
     usable = hasContrast();
     solved = false;
 }
@@ -421,7 +416,7 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
     Moments moments = Moments();
     for (const PatchPlace& start : starts)
     {
-        const PatchPlace tried = {start.centre - start.warp * beside, start.warp};
+        const PatchPlace tried = {start.centre - start.warp * pointOffset, start.warp};
         if (!sampleAt(tried))
             continue;
         const Moments found = momentsOf(samples.data());
@@ -457,18 +452,17 @@ PatchAlignment PatchAligner::align(const Mat& image2, const PatchPlaces& starts,
             return refused;
         moments = momentsOf(samples.data());
         similarity = similarityOf(moments);
-        if (i == STEPS_OF_A_TRY && least > 0 && similarity < LEAST_UNDERWAY)
+        if (i == GUIDED_STEPS && least > 0 && similarity < LEAST_GUIDED_SIMILARITY)
             return refused;
     }
     if (!(similarity > LEAST_SIMILARITY))
         return refused;
     place.centre -= interpolationError(place);
-    const Vec2d found = place.centre + place.warp * beside, moved = found - detected;
+    const Vec2d found = place.centre + place.warp * pointOffset, moved = found - detected;
     if (!(moved.dot(moved) < LARGEST_MOVE * LARGEST_MOVE))
         return refused;
     return {true, found, std::min(similarity, 1.), place.warp * covariance(moments) * place.warp.t(),
             place.warp * (1 / unit)};
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -7,17 +7,16 @@
 #include "../common/aligned_buffer.hpp"
 #include "kernels/kernels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-//! A patch on an image: its centre, and the linear warp from the patch's units to pixels (affine, with the centre).
+//! A patch on an image: its centre in pixels, and the linear warp from the patch's units to pixels.
 struct PatchPlace
 {
     Vec2d centre;
     Matx22d warp;
 };
 
-//! One place or more where a patch may begin.
+//! One to four start places of a patch.
 class PatchPlaces
 {
 public:
@@ -39,36 +38,36 @@ struct PatchAlignment
     Matx22d warp;  //!< of the surroundings, from the first image to the second
 };
 
-//! Smooths a normalized image; the result is a part of a larger one, where its border is repeated.
+//! Smooths a normalized image; the result is a view of a larger image, which repeats its border pixels.
 Mat preparedForAlignment(const Mat& normalized);
 
-/** A coarse look at two images around points inside them: false where they hardly agree, which PatchAligner would take much
- longer to see. @param warp from the first image's surroundings to the second's. */
-bool mayAgree(
+/** Compares two images coarsely around points inside them. False: PatchAligner would refuse the match, but take longer.
+ @param warp from the first image's surroundings to the second's. */
+bool roughlyAgree(
         const Mat& image1, const Vec2d& point1, const Mat& image2, const Vec2d& point2, const Matx22d& warp);
 
-//! Least-squares matching of patches, one after the other: what a thread needs for that.
+//! Least-squares matching of patches, one after the other, on one thread.
 class PatchAligner
 {
 public:
     PatchAligner();
 
-    /** Takes the surroundings of a point of the first image, which is prepared by preparedForAlignment() as the second
-     one.
+    /** Sets the patch to search for: the surroundings of a point of the first image.
+     @param image1 made by preparedForAlignment(), as image2 below.
      @param point inside the image.
      @param unit of the patch, in pixels of the first image, up to 1. */
-    void take(const Mat& image1, const Vec2d& point, double unit);
+    void setTemplate(const Mat& image1, const Vec2d& point, double unit);
 
-    /** Finds where these surroundings are in the second image.
-     @param starts places of the point inside the image; the one that agrees best is taken.
-     @param least similarity that the start is above; more than 0 for a try, which ends early where it leads nowhere. */
+    /** Finds the patch in the second image.
+     @param starts places of the point inside the image; the most similar one is used.
+     @param least similarity that the start must exceed. Above 0, steps also end early if the similarity stays low. */
     PatchAlignment align(const Mat& image2, const PatchPlaces& starts, double least);
 
 private:
     struct Moments
     {
-        double sums[SUMS];       //!< of the samples less their mean, times weights, from SUM_TEMPLATE on
-        double mean, deviation;  //!< of the samples
+        double sums[SUMS];  //!< weighted sums of (sample - mean), from SUM_TEMPLATE on
+        double mean, deviation;
     };
 
     Vec2d readTemplate(const Mat& image, const Vec2d& point);
@@ -87,22 +86,21 @@ private:
     const RefinementKernels& kernels;
     const PatchWeights& weights;
     PatchTemplate patch;
-    const uchar* pixels1;  //!< that it was made of, TEMPLATE x TEMPLATE
+    const uchar* pixels1;  //!< the TEMPLATE x TEMPLATE pixels of the patch
     size_t step1;
     uchar resampled[TEMPLATE * TEMPLATE];
-    double unit;   //!< of the patch
-    Vec2d beside;  //!< where the point is from the patch's centre, in its units
-    bool usable;   //!< whether the patch can tell a place, as far as is known
-    bool solved;   //!< whether `inverse` is known
+    double unit;        //!< of the patch, in pixels of the first image
+    Vec2d pointOffset;  //!< of the point from the patch's centre, in its units
+    bool usable;        //!< false: the patch is known to have too little contrast
+    bool solved;        //!< whether `inverse` is set
     Moments ofTemplate;
-    double totals[SUMS];        //!< of the weights
-    double independentSamples;  //!< as many as the weighted ones are worth
+    double totals[SUMS];        //!< sums of the weights
+    double independentSamples;  //!< effective number of samples
     double squaredPlace;        //!< weighted mean of PatchWeights::x squared
     Matx66d inverse;            //!< of the normal matrix
-    Rect pixels;                //!< of the image that the window holds
+    Rect pixels;                //!< those of the second image that the window holds
     AlignedBuffer<ushort> window;
     AlignedBuffer<short> samples, ones;
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

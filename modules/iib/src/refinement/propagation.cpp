@@ -2,36 +2,35 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "propagation.hpp"
+#include "match_refiner.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
-const double REACH = 100;  //!< pixels of the first image across which a match predicts others
-const double TOLERANCE = 3, TOLERANCE_BY_DISTANCE = .1;  //!< pixels between where a point is predicted and is
-const size_t CANDIDATES = 4;  //!< keypoints of the second image, the nearest to where one should be
-const size_t NEIGHBOURS = 8, LEAST_AGREEING = 2;  //!< of a match that predicts others
-const double LEAST_SIMILARITY = .7;  //!< higher than of given matches, whose descriptors agreed as well
+const double REACH = 100;  //!< pixels of the first image within which a match predicts others
+const double TOLERANCE = 3, TOLERANCE_BY_DISTANCE = .1;  //!< pixels from the predicted place to a keypoint
+const size_t CANDIDATES = 4;                             //!< keypoints nearest to the predicted place
+const size_t NEIGHBOURS = 8, LEAST_AGREEING = 2;         //!< of a match that predicts others
+const double LEAST_SIMILARITY = .7;  //!< higher than for given matches, whose descriptors agreed as well
 const int MOST_TRIES = 4;            //!< of a keypoint, each from another match
-const int PART = 64;                 //!< keypoints that a thread looks at
+const int PART = 64;                 //!< keypoints of a job
+const double LEAST_CELL = 3;         //!< pixels
+const int MOST_MATCHES = 8, MOST_KEYPOINTS = 64;  //!< points of a cell that a search considers
 
-const double LEAST_CELL = 3;  //!< pixels
-
-//! A squared distance, and the index of the point so far away.
+//! A point by its squared distance and its index.
 typedef std::pair<double, int> Near;
 
-//! The nearest points of some, nearest first.
+//! The nearest points so far, nearest first.
 class Nearest
 {
 public:
     static constexpr size_t MOST = 9;
 
-    //! @param count of the points, up to MOST; they are nearer than a radius.
+    //! @param count_ points to keep, up to MOST. @param radius that they are within.
     Nearest(size_t count_, double radius) : count(count_), found(0), limit(radius * radius) {}
 
-    //! The square of what points that are still to come have to be nearer than.
+    //! The squared distance below which a further point is kept.
     double squaredLimit() const { return limit; }
     void add(const Near& point)
     {
@@ -53,11 +52,11 @@ private:
     Near points[MOST];
 };
 
-//! Points of an image in square cells, about as many as points, so that those near a place are found in few steps.
+//! Points of an image in square cells, about one cell for each point, to find near points in few steps.
 class NearPoints
 {
 public:
-    //! @param mostOfCell of the points of a cell that are looked at: the first ones.
+    //! @param mostOfCell points of a cell that are kept: the first ones.
     NearPoints(Size image, const std::vector<Vec2d>& all, const std::vector<int>& chosen, int mostOfCell)
         : cell(std::max(std::sqrt((double)image.width * image.height / (chosen.size() + 1)), LEAST_CELL)),
           size(cvCeil(image.width / cell), cvCeil(image.height / cell)), begins(size.area() + 1)
@@ -83,7 +82,7 @@ public:
         const Point centre(column(place[0]), row(place[1]));
         for (int ring = 0; ring <= std::max(size.width, size.height); ring++)
         {
-            const double least = std::max(ring - 1, 0) * cell;  // nothing of the ring is nearer
+            const double least = std::max(ring - 1, 0) * cell;  // distance of the ring's points, at least
             if (least * least >= nearest.squaredLimit())
                 break;
             const int left = centre.x - ring, right = centre.x + ring;
@@ -108,18 +107,18 @@ private:
         int index;
     };
 
-    //! The points of a row's cells, which lie side by side.
+    //! Adds the points of neighbouring cells in a row.
     void addCells(const Vec2d& place, int y, int left, int right, Nearest& nearest) const
     {
         const int* const row = &begins[y * size.width];
         for (int i = row[left]; i < row[right + 1]; i++)
         {
-            const Vec2d beside = points[i].point - place;
-            nearest.add(Near(beside.dot(beside), points[i].index));
+            const Vec2d offset = points[i].point - place;
+            nearest.add(Near(offset.dot(offset), points[i].index));
         }
     }
 
-    //! Places outside of the image are nearest to its edge.
+    //! Places outside the image belong to the outermost cells.
     static int limited(double place, int end) { return (int)std::min(std::max(place, 0.), end - 1.); }
     int column(double x) const { return limited(x / cell, size.width); }
     int row(double y) const { return limited(y / cell, size.height); }
@@ -131,8 +130,6 @@ private:
     std::vector<Place> points;
 };
 
-const int MOST_MATCHES = 8, MOST_KEYPOINTS = 64;  //!< of a cell that are looked at
-
 std::vector<Vec2d> placesOf(const std::vector<KeyPoint>& keypoints)
 {
     std::vector<Vec2d> places;
@@ -141,7 +138,6 @@ std::vector<Vec2d> placesOf(const std::vector<KeyPoint>& keypoints)
     return places;
 }
 
-//! The indices below `end` that are not marked.
 template <class Marked> std::vector<int> unmarked(size_t end, const Marked& isMarked)
 {
     std::vector<int> indices;
@@ -151,7 +147,7 @@ template <class Marked> std::vector<int> unmarked(size_t end, const Marked& isMa
     return indices;
 }
 
-//! A refined match: where a point of the first image is in the second one, and the surroundings with it.
+//! A refined match: a point of the first image, its place in the second one, and the warp of the surroundings.
 struct Seed
 {
     Vec2d first, second;
@@ -164,7 +160,7 @@ struct Seed
     }
 };
 
-//! Whether others near it predict it.
+//! Whether at least LEAST_AGREEING of the nearest seeds predict it.
 bool isTrusted(int seed, const std::vector<Seed>& seeds, const NearPoints& ofSeeds)
 {
     static_assert(NEIGHBOURS < Nearest::MOST && CANDIDATES <= Nearest::MOST, "there is room");
@@ -205,7 +201,7 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
                 unmarked(seeds.size(), [](size_t) { return false; }), MOST_MATCHES);
         const std::vector<int> trusted = unmarked(
                 seeds.size(), [&](size_t i) { return i < before || !isTrusted((int)i, seeds, ofSeeds); });
-        // of the last round
+        // trusted seeds of this round
         const NearPoints ofTrusted(refiner.firstSize(), seedPlaces, trusted, MOST_MATCHES);
         const NearPoints ofSecond(refiner.secondSize(), places2,
                 unmarked(places2.size(), [&](size_t t) { return matched2[t] || !refiner.seesSecond(t); }),
@@ -251,5 +247,4 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
     }
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -3,12 +3,11 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../common/outputs.hpp"
-#include "propagation.hpp"
+#include "match_refiner.hpp"
 
 #include "opencv2/iib/refinement.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -87,5 +86,4 @@ void propagateMatches(const PreparedImage& image1, const std::vector<KeyPoint>& 
     write(all, keypoints1, points1, points2, covariances, similarities);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

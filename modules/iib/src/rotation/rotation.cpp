@@ -9,19 +9,18 @@
 #include "opencv2/iib/rotation.hpp"
 #include "opencv2/imgproc.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
 static constexpr int MAX_VOTES = 200000;  //!< more pairs of matches would not change estimateRotation()
 static constexpr int TRIED_POINTS = 200;  //!< of each image, the strongest
 static constexpr float UPRIGHT = -1;
-static constexpr double UPRIGHT_WITHIN = 3;  //!< degrees; upright regions match up to there
-// Every multiple of 30 degrees is a second angle less a first one; descriptors still match 15 degrees off.
+static constexpr double UPRIGHT_WITHIN = 3;  //!< degrees; upright regions match at smaller rotations
+// Differences of a second and a first angle give every multiple of 30 degrees; descriptors match up to 15 degrees off.
 const float FIRST_ANGLES[] = {UPRIGHT, 30, 60}, SECOND_ANGLES[] = {UPRIGHT, 90, 180, 270};
 static constexpr float ANGLE_TOLERANCE = 18;      //!< degrees
-static constexpr double LENGTH_TOLERANCE = 1.25;  //!< by which keypoints farther from the camera differ
+static constexpr double LENGTH_TOLERANCE = 1.25;  //!< ratio, since distances from the camera differ
 
 struct Described
 {
@@ -35,8 +34,7 @@ void setAngle(std::vector<KeyPoint>& keypoints, float angle)
         kp.angle = angle;
 }
 
-//! The strongest keypoints at each angle, in the image at half its resolution, where all takes less time; none of an
-//! empty image.
+//! Describes the strongest keypoints at each angle, at half the image's resolution to save time.
 template <size_t N>
 std::vector<Described> describeHalf(IIBDescriptorExtractor& extractor, const Mat& image,
         std::vector<KeyPoint> keypoints, const float (&angles)[N])
@@ -54,7 +52,7 @@ std::vector<Described> describeHalf(IIBDescriptorExtractor& extractor, const Mat
     for (KeyPoint& kp : keypoints)
     {
         kp.pt = (kp.pt + Point2f(0.5f, 0.5f)) / 2 - Point2f(0.5f, 0.5f);
-        kp.size = std::max(kp.size / 2, FLT_MIN);  // half the least number would be 0
+        kp.size = std::max(kp.size / 2, FLT_MIN);  // not 0
     }
     std::vector<KeyPoint> all;
     for (float angle : angles)
@@ -67,7 +65,7 @@ std::vector<Described> describeHalf(IIBDescriptorExtractor& extractor, const Mat
     std::vector<Described> described;
     for (int i = 0, end = 0; i < (int)N; i++)
     {
-        // which may be fewer, under BORDER_DROP
+        // under BORDER_DROP, some may be missing
         const int begin = end;
         while (end < (int)all.size() && all[end].angle == angles[i])
             end++;
@@ -113,7 +111,7 @@ void vote(const Described& first, const Described& second, const std::vector<DMa
 double findRotation(IIBDescriptorExtractor& extractor, const Mat& image1,
         const std::vector<KeyPoint>& keypoints1, const Mat& image2, const std::vector<KeyPoint>& keypoints2)
 {
-    // Without a ratio: so few matches and so many angles need none, since wrong matches do not agree.
+    // no ratio test: wrong matches do not agree anyway
     const Ptr<HierarchicalMatcher> mutual = HierarchicalMatcher::create();
     mutual->setCrossCheck(true);
     const std::vector<Described> first = describeHalf(extractor, image1, keypoints1, FIRST_ANGLES);
@@ -187,7 +185,7 @@ double matchRotated(InputArray image1, std::vector<KeyPoint>& keypoints1, InputA
     if (rotation < 0)
         rotation = findRotation(*extractor, images[0], keypoints1, images[1], keypoints2);
     const bool upright = std::min(rotation, 360 - rotation) <= UPRIGHT_WITHIN;
-    // copies, so that what the caller gave stays if something is wrong
+    // copies, so that an error leaves the caller's keypoints unchanged
     std::vector<KeyPoint> first = keypoints1, second = keypoints2;
     setAngle(first, UPRIGHT);
     setAngle(second, upright ? UPRIGHT : (float)rotation);
@@ -205,7 +203,7 @@ double matchRotated(InputArray image1, InputArray image2, const Ptr<IIBDescripto
         std::vector<KeyPoint>& keypoints2, std::vector<DMatch>& matches1to2, double rotation)
 {
     checkArguments(extractor, matcher, rotation);
-    std::vector<KeyPoint> first, second;  // what the caller has stays if something is wrong
+    std::vector<KeyPoint> first, second;  // an error leaves the caller's keypoints unchanged
     extractor->detect(image1, first);
     extractor->detect(image2, second);
     rotation = matchRotated(image1, first, image2, second, extractor, matcher, matches1to2, rotation);
@@ -214,5 +212,4 @@ double matchRotated(InputArray image1, InputArray image2, const Ptr<IIBDescripto
     return rotation;
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

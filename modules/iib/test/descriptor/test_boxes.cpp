@@ -5,8 +5,7 @@
 #include "../support/test_errors.hpp"
 #include "../support/describe.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const int ALL = IIB::CHANNEL_GRAD_X | IIB::CHANNEL_GRAD_Y | IIB::CHANNEL_INTENSITY |
                 IIB::CHANNEL_SIGNED_GRAD_X | IIB::CHANNEL_SIGNED_GRAD_Y;
@@ -177,5 +176,4 @@ TEST(IIB_Boxes, errors)
         expectError(Error::StsOutOfRange, "selection, row 0", [&] { boxes()->setSelection(selection); });
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

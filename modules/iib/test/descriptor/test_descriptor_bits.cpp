@@ -4,8 +4,7 @@
 
 #include "../support/describe.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 typedef testing::TestWithParam<int> IIB_Bits_Mapping;
 
@@ -205,7 +204,7 @@ TEST(IIB_Property, linear_illumination_changes_no_bit)
     }
 }
 
-// The samples fall on the same pixels, and the gradient rotates exactly; where there is none, nothing rotates.
+// The samples fall on the same pixels, and the gradient rotates exactly; a zero gradient does not rotate.
 TEST(IIB_Property, rotated_with_the_image)
 {
     const Mat image = texture(SIZE, CV_8U, 7);
@@ -247,5 +246,4 @@ TEST(IIB_Property, rotated_with_the_image)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

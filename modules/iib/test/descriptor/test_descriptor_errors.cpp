@@ -5,8 +5,7 @@
 #include "../support/test_errors.hpp"
 #include "../support/describe.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const Size SIZE(60, 50);
 
@@ -104,7 +103,7 @@ TEST(IIB_Errors, keypoints)
                 std::vector<Mat>(), {KeyPoint(1, 1, 9), KeyPoint(1, 1, 9), KeyPoint(1, 1, size)});
 }
 
-// Detectors leave them at anything; bits are those of any other angle.
+// Detectors may leave any angle; it does not change bits.
 TEST(IIB_Errors, angles_that_nobody_reads_may_be_anything)
 {
     const Mat image = texture(SIZE, CV_8U, 1);
@@ -141,5 +140,4 @@ TEST(IIB_Errors, no_extractor_detects_by_itself)
     EXPECT_EQ("Feature2D.ORB", a->getDetector()->getDefaultName());
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -6,8 +6,7 @@
 
 #include <fstream>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 /* The core's fixtures read their image by name from OpenCV's own test data, which few machines have. This imread
  hides cv::imread from them: where there is no such file, they get a drawn scene. */
@@ -16,8 +15,7 @@ Mat imread(const std::string& name)
     return std::ifstream(name.c_str()) ? cv::imread(name) : scene(Size(400, 320), 1);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test
 
 #if CV_VERSION_MAJOR >= 5
 #include "features/test/test_descriptors_invariance.impl.hpp"
@@ -25,8 +23,7 @@ Mat imread(const std::string& name)
 #include "features2d/test/test_descriptors_invariance.impl.hpp"
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 Ptr<IIB> extractorFor(const Ptr<Feature2D>& detector)
 {
@@ -34,7 +31,7 @@ Ptr<IIB> extractorFor(const Ptr<Feature2D>& detector)
             IIB::scaleFactorFor(detector), 4, IIB::CHANNELS_DEFAULT, IIB::MAPPING_MEAN, false, true);
 }
 
-//! What the fixture wants: an object up to OpenCV 4.6, what makes it in later versions.
+//! An argument of the fixture: an object up to OpenCV 4.6, a function that makes it in later versions.
 struct Given
 {
     Ptr<Feature2D> object;
@@ -60,5 +57,4 @@ INSTANTIATE_TEST_CASE_P(IIB, DescriptorScaleInvariance,
                 pairedWith(KAZE::create(false, false, 0.005f), 0.98f), pairedWith(BRISK::create(), 0.8f),
                 pairedWith(AKAZE::create(), 0.8f)));
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -7,8 +7,7 @@
 
 #include <thread>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const Size SIZE(180, 160);
 
@@ -228,5 +227,4 @@ TEST(IIB_Input, colour_becomes_grey_by_whole_numbers)
             }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -6,8 +6,7 @@
 #include "../support/test_errors.hpp"
 #include "../support/describe.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 void expectSame(const IIB& expected, const IIB& actual)
 {
@@ -90,7 +89,34 @@ TEST(IIB_IO, foreign_and_damaged_nodes_throw_and_change_nothing)
     EXPECT_THROW(Algorithm::loadFromString<IIB>("%YAML:1.0\n---\nBRISK:\n   threshold: 30\n"), cv::Exception);
 }
 
-//! Every detector that a file can hold, none with its default parameters, but for SIFT, which tells none.
+TEST(IIB_IO, names_are_bytes_without_a_zero)
+{
+    expectError(Error::StsBadArg, "a zero byte", [] { IIB::create()->save(String("a\0b.yml", 7)); });
+}
+
+#ifdef __linux__
+TEST(IIB_IO, parameters_on_a_full_disk_keep_the_old_file)
+{
+    const TemporaryFolder folder;
+    const Ptr<Algorithm> savers[] = {IIB::createPreset(IIB::PRESET_S512), HierarchicalMatcher::create({2, 6}),
+            HessianDetector::create(), NormalizedDetector::create(ORB::create())};
+    for (const char* extension : {".yml", ".xml", ".json"})
+        for (const Ptr<Algorithm>& saver : savers)
+        {
+            const String name = folder.name + "/parameters" + extension;
+            saver->save(name);
+            const std::string before = readFile(name);
+            ASSERT_GT(before.size(), 60u);
+            {
+                const FullDisk full(50);
+                EXPECT_THROW(saver->save(name), cv::Exception) << name;
+            }
+            EXPECT_EQ(before, readFile(name));
+        }
+}
+#endif
+
+//! Every detector that a file can hold, with unusual parameters.
 std::vector<Ptr<Feature2D>> detectors()
 {
     const Ptr<ORB> orb = ORB::create(321, 1.3f, 5, 17, 1, 3, ORB::FAST_SCORE, 25, 9);
@@ -171,7 +197,7 @@ TEST(IIB_DetectorFile, an_unknown_detector_reads_its_parameters_or_is_an_error)
     }
 }
 
-// OpenCV's own detectors write nothing of themselves, or not all.
+// OpenCV's own detectors do not write all their parameters.
 TEST(IIB_DetectorFile, detectors_of_other_classes_are_set_before_reading)
 {
     for (const Ptr<Feature2D>& detector : {Ptr<Feature2D>(SIFT::create()),
@@ -215,5 +241,4 @@ TEST(IIB_DetectorFile, damage_throws_and_changes_nothing)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

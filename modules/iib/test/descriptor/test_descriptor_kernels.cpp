@@ -2,13 +2,12 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/describe.hpp"
+#include "../support/textures.hpp"
 
 #include "../../src/descriptor/kernels/kernels.hpp"
 #include "../../src/descriptor/plan.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using namespace cv::iib;
 
@@ -22,7 +21,7 @@ template <typename T> std::vector<T> randomRow(Integers& random, int width, int 
     return row;
 }
 
-//! Channels added to other rows are what they are alone, and those rows.
+//! Channels that are added to other rows equal the sum of both.
 template <typename T> void checkAddedChannels(int limit)
 {
     Integers random(12);
@@ -170,5 +169,4 @@ TEST(IIB_DescriptorKernels, bits_are_written_where_they_belong)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

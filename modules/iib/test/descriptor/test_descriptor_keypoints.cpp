@@ -4,8 +4,7 @@
 
 #include "../support/describe.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const Size SIZE(180, 160);
 
@@ -196,5 +195,4 @@ TEST(IIB_Border, reflects_the_image)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

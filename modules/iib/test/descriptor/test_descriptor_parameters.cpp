@@ -4,8 +4,7 @@
 
 #include "../support/test_errors.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 TEST(IIB_Parameters, names_and_sizes)
 {
@@ -153,5 +152,4 @@ TEST(IIB_Parameters, mistakes_in_selections)
     EXPECT_EQ(0, cvtest::norm(kept, iib->getSelection(), NORM_INF));
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -6,15 +6,14 @@
 #include "../support/test_errors.hpp"
 #include "../support/temporary_file.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 struct DetectorCase
 {
     const char* name;
     Ptr<Feature2D> (*create)();
     float scaleFactor;
-    int minCorrect;  //!< about two thirds of what was measured
+    int minCorrect;  //!< about two thirds of the measured number
 };
 
 template <typename T> Ptr<Feature2D> make() { return T::create(); }
@@ -156,7 +155,7 @@ std::vector<Ptr<Feature2D>> bothWith(const Ptr<Feature2D>& detector)
     return {IIB::createFor(detector), NormalizedDetector::create(detector)};
 }
 
-// ORB of OpenCV 4.6 scales the mask and keeps what is above 254.
+// ORB of OpenCV 4.6 scales the mask, and allows values above 254 only.
 TEST(IIB_Detector, any_number_in_a_mask_but_0_allows)
 {
     const Mat image = scene(Size(320, 240), 1);
@@ -272,5 +271,4 @@ TEST(IIB_CreateFor, errors)
                 [=] { IIB::createFor(ORB::create(), preset); });
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

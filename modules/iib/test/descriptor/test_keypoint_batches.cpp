@@ -8,8 +8,7 @@
 
 #include <numeric>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using cv::iib::KeyPointBatch;
 typedef std::vector<Rect> Regions;
@@ -139,7 +138,7 @@ Regions grid(int n, Size image)
     return regions;
 }
 
-//! A horizontal bar at the top, a vertical one at the left of what is left, and so on.
+//! A horizontal bar at the top, a vertical bar at the left of the rest, and so on.
 Regions staircase(int n, Size image)
 {
     const int steps = std::min(image.width, image.height) / 8;
@@ -171,12 +170,11 @@ TEST(IIB_KeyPointBatches, rounds_and_pixels_are_bounded_for_every_layout)
             for (const std::vector<int>& members : batches)
                 pixels += unionOf(regions, members).area();
             EXPECT_LE(pixels, 1.01 * image.area()) << regions.size();
-            if (layout == staircase)  // of which each round cuts a step off
+            if (layout == staircase)  // each round cuts off one step
             {
                 EXPECT_EQ(cv::iib::MAX_CUTS + 1u, batches.size());
             }
         }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -6,8 +6,7 @@
 #include "../support/test_errors.hpp"
 #include "../support/describe.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const double UNKNOWN = -1;
 
@@ -18,7 +17,7 @@ Ptr<IIB> rotating()
     return iib;
 }
 
-//! A pair and what matchRotated makes of it.
+//! A pair, and matchRotated of it.
 struct MatchedPair : public RotatedPair
 {
     Ptr<IIB> iib;
@@ -243,7 +242,7 @@ TEST(IIB_MatchRotated, errors)
     pair.images[1].convertTo(pair.images[1], CV_32S);
     for (double rotation : {-1., 10.})
         expectError(Error::StsUnsupportedFormat, "32S", call(rotating(), matcher, rotation));
-    // what was given stays
+    // arguments are unchanged
     EXPECT_EQ(77, first[0].angle);
     EXPECT_EQ(77, second[0].angle);
     const size_t count = first.size();
@@ -273,5 +272,4 @@ TEST(IIB_MatchRotated, the_least_size_is_one)
             rotating(), HierarchicalMatcher::createRecommended(), matches));
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -7,8 +7,7 @@
 #include "../support/test_errors.hpp"
 #include "../../src/descriptor/kernels/kernels.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 TEST(IIB_Orientation, as_atan2_for_all_gradients_of_8_bits)
 {
@@ -50,7 +49,7 @@ TEST(IIB_Orientation, kernel_for_all_gradients_of_8_bits)
     }
 }
 
-/* Every value of the rows of channels, sums and cells: two by two pixels around each pixel, whose order SORT tells,
+/* Every value of the rows of channels, sums and cells: 2 x 2 pixels around each pixel, by SORT,
  in all channels, for rows of every width at several alignments. */
 TEST(IIB_Orientation, channel_rows_of_every_width_and_alignment)
 {
@@ -98,7 +97,7 @@ TEST(IIB_GradientOrientation, bits_as_the_oracle)
     {
         const Mat image = texture(size, depth, 1);
         std::vector<KeyPoint> keypoints = scatter(size, 150, 8.f, 120.f, 2);
-        for (int i = 0; i < 40; i++)  // again, up to three times: their angles are those of lower peaks
+        for (int i = 0; i < 40; i++)  // repeated up to three times: they get lower peaks
             keypoints.push_back(keypoints[i % 20]);
         keypoints.insert(keypoints.end(), 40, keypoints[0]);  // more than there are peaks
         for (int granularity : {1, 4, 6})
@@ -232,5 +231,4 @@ TEST(IIB_Rotation, errors)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -8,8 +8,7 @@
 
 #include <memory>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 Ptr<IIB> rotating(int granularity = 4, int channels = IIB::CHANNELS_DEFAULT)
 {
@@ -133,7 +132,7 @@ TEST(IIB_Rotated, maps_that_begin_at_the_same_byte_are_not_the_same)
     }
 }
 
-// A grid that spans many pixels is read point by point: the bits are the same, whoever else is described.
+// A grid that spans many pixels is read point by point: the bits do not depend on other keypoints.
 TEST(IIB_Rotated, sparse_and_dense_grids_give_the_same_bits)
 {
     for (int depth : {CV_8U, CV_16U})
@@ -176,5 +175,4 @@ TEST(IIB_Rotated, area_of_more_than_an_int_of_pixels)
                 0, differingBits(all.row(i), describe(*iib, image, std::vector<KeyPoint>(1, keypoints[i]))));
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -90,7 +90,7 @@ KeyPoint refined(const std::vector<Mat_<float>>& responses, int scale, int y, in
     return KeyPoint(x + offsetX, y + offsetY, (float)(2 * sigma) * growth, -1, c, scale);
 }
 
-//! The scales of one resolution, from `first` on, of which those from `begin` to before `end` have keypoints.
+//! The scales of one resolution, from `first` on; the scales [begin, end) have keypoints.
 struct Octave
 {
     int spacing;  //!< of its pixels, in pixels of the image

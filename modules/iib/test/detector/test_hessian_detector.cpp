@@ -6,8 +6,7 @@
 #include "../normalization/normalization_oracle.hpp"
 #include "hessian_oracle.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using oracle::found;
 
@@ -213,7 +212,7 @@ TEST(IIB_HessianDetector, large_images_are_searched_at_the_working_size)
     }
 }
 
-// The longer side alone would leave nothing of them.
+// Reduced by their longer side alone, they would vanish.
 TEST(IIB_HessianDetector, long_and_narrow_images_have_keypoints)
 {
     const Ptr<HessianDetector> detector = HessianDetector::create(0, 0, 5, 2.2f, 5, 64);
@@ -242,5 +241,4 @@ TEST(IIB_HessianDetector, strongest_first_and_fewer_are_the_first_of_more)
     EXPECT_EQ(201u, found(*HessianDetector::create(0, threshold), image).size());
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -7,8 +7,7 @@
 #include "../support/textures.hpp"
 #include "hessian_oracle.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 using oracle::found;
 
@@ -123,5 +122,4 @@ TEST(IIB_HessianDetector, parameters_and_files)
     EXPECT_EQ(HessianDetector::create()->getScales(), other->getScales());
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -7,8 +7,7 @@
 #include "../support/test_images.hpp"
 #include "../normalization/normalization_oracle.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 TEST(IIB_NormalizedDetector, finds_the_keypoints_of_the_normalized_image)
 {
@@ -113,5 +112,4 @@ TEST(IIB_NormalizedDetector, parameters_and_files)
     EXPECT_THROW(copy->read(other.root()), cv::Exception);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -5,8 +5,7 @@
 #include "../support/matcher_oracle.hpp"
 #include "../../src/matcher/kernels/hamming.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 typedef std::vector<int> Levels;
 typedef std::map<std::pair<int, int>, int> Distances;  // of (query, train code)
@@ -42,7 +41,7 @@ struct ScanData
           blocks((rows + 15) / 16 * layout.blockWords()), queryThresholds(queryCount, INT_MAX),
           trainThresholds((rows + 15) / 16 * 16, 0)
     {
-        // All bits differ, for two queries that may share tables: what adds up in bytes is as large as can be.
+        // All bits differ, for two queries that may share tables: the largest sums in bytes.
         queries.rowRange(0, std::min(queryCount, 2)).setTo(255);
         trains.row(3).setTo(0);
         trains.row(7).setTo(255);
@@ -92,9 +91,8 @@ TEST(IIB_Hamming, last_level_begins_with_every_fourth_word)
     EXPECT_EQ((std::vector<unsigned>{0, 0, ~0u, 0, 0, 0, 0, 0, 0}), plain);
 }
 
-// The whole kernel against a loop over bits: every number of words, more than add up in bytes and in 16 bits included, queries
-// that do and do not fill a tile, one block and several, the last one full or not; bounds that about half the pairs are
-// within, and that hardly any is.
+// Numbers of words whose sums exceed bytes and 16 bits; numbers of queries around that of a kernel; one block and several, the
+// last one full or not; thresholds that about half the pairs and few pairs are below.
 TEST(IIB_Hamming, scan_as_the_naive_loop)
 {
     for (int bytes : {1, 4, 5, 12, 31, 32, 64, 68, 170, 248, 252, 256, 260, 682, 1000, 8200})
@@ -123,8 +121,7 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
                 }
 }
 
-// The nearest or the two nearest, and the nearest in the other direction, ties included, from what was known before on;
-// without and with masks.
+// One or two neighbours per query, and the nearest query of each train code; with ties, earlier neighbours and masks.
 TEST(IIB_Hamming, nearest_as_the_naive_loop)
 {
     for (int bytes : {1, 5, 32, 64, 68, 170})
@@ -173,5 +170,4 @@ TEST(IIB_Hamming, nearest_as_the_naive_loop)
                 }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

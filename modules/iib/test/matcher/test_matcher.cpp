@@ -6,8 +6,7 @@
 
 #include <numeric>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 // A descriptor's width cut into levels: coarse ones of 1/8 and 1/4, the rest last.
 std::vector<int> levelsOf(int bytes)
@@ -41,16 +40,13 @@ TEST_P(IIB_Matcher_Sizes, as_BFMatcher)
     Matches expected, actual;
     const Mat mask = randomMask(3, queries.rows, train.rows, 0.6);
     for (int k = 1; k <= 3; k++)
-    {
-        expected.clear();  // BFMatcher appends
-        BFMatcher(NORM_HAMMING).knnMatch(queries, train, expected, k);
-        matcher->knnMatch(queries, train, actual, k);
-        expectEqual(expected, actual);
-        expected.clear();
-        BFMatcher(NORM_HAMMING).knnMatch(queries, train, expected, k, mask, true);
-        matcher->knnMatch(queries, train, actual, k, mask, true);
-        expectEqual(expected, actual);
-    }
+        for (bool masked : {false, true})
+        {
+            expected.clear();  // BFMatcher appends
+            BFMatcher(NORM_HAMMING).knnMatch(queries, train, expected, k, masked ? mask : Mat(), masked);
+            matcher->knnMatch(queries, train, actual, k, masked ? mask : Mat(), masked);
+            expectEqual(expected, actual);
+        }
     for (int radius = 1; radius < bytes * 8; radius = radius * 3 + 1)
     {
         expected.clear();
@@ -93,7 +89,7 @@ TEST(IIB_Matcher, all_together_as_the_oracle)
         }
 }
 
-// Levels that end one soon after the other and far apart, thresholds that hardly any pair and that most pairs pass.
+// Small and large levels; thresholds that few and most pairs pass.
 TEST(IIB_Matcher, any_thresholds_as_the_oracle)
 {
     for (const std::vector<int>& levels :
@@ -129,8 +125,7 @@ TEST(IIB_MatcherClone, keeps_parameters)
     }
 }
 
-// What either adds or clears is not in the other's packed codes, nor in its matrices; 5 rows and 6 more are in one
-// CodeBlock, 20 more need new memory.
+// With 6 rows more, all codes are in one CodeBlock; 20 more need new memory.
 typedef testing::TestWithParam<int> IIB_MatcherClone_Rows;
 TEST_P(IIB_MatcherClone_Rows, are_not_shared)
 {
@@ -172,31 +167,6 @@ TEST_P(IIB_MatcherClone_Rows, are_not_shared)
 
 INSTANTIATE_TEST_CASE_P(/**/, IIB_MatcherClone_Rows, testing::Values(6, 20));
 
-// Fresh, with images that have no rows, and cleared.
-TEST(IIB_MatcherClone, of_a_matcher_without_rows)
-{
-    const Mat codes = randomDescriptors(1, 5, 42);
-    for (int setting = 0; setting < 3; setting++)
-    {
-        SCOPED_TRACE(setting);
-        const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({2, 8, 32});
-        if (setting > 0)
-            matcher->add(setting == 1 ? Mat() : codes);
-        if (setting == 2)
-            matcher->clear();
-        Ptr<HierarchicalMatcher> copy;
-        ASSERT_NO_THROW(copy = matcher->copy());
-        ASSERT_NO_THROW(matcher->clone(false));
-        EXPECT_EQ(matcher->getTrainDescriptors().size(), copy->getTrainDescriptors().size());
-        EXPECT_EQ(matcher->levelSizes(), copy->levelSizes());
-        copy->add(codes);
-        std::vector<DMatch> matches;
-        copy->match(codes, matches);
-        EXPECT_EQ(5u, matches.size());
-        EXPECT_TRUE(matcher->empty() || setting == 1);
-    }
-}
-
 TEST(IIB_MatcherClone, empty_clones_count_for_the_original)
 {
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({2, 8, 32});
@@ -209,5 +179,4 @@ TEST(IIB_MatcherClone, empty_clones_count_for_the_original)
     EXPECT_EQ(1, matcher->matchCost());
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -4,10 +4,9 @@
 
 #include "../support/matcher_oracle.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
-// Queries and train codes are scanned in chunks; chunks of 8 and of 1 make small data cross their boundaries.
+// Small chunks, so that small data crosses their boundaries.
 typedef testing::TestWithParam<std::tuple<int, int>> IIB_Matcher_Chunks;  // size of a chunk, mode
 
 //! The k nearest, and the share of bits that were compared.
@@ -87,5 +86,4 @@ TEST(IIB_Matcher_Adaptive, margin)
     EXPECT_EQ(0, matches[0][1].trainIdx);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

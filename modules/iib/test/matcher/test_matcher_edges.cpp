@@ -14,8 +14,7 @@
 #include <unistd.h>
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 // The edge cases of DescriptorMatcher in which BFMatcher fails or surprises, and its core's own tests in their
 // Hamming form.
@@ -63,7 +62,7 @@ TEST(IIB_MatcherEdges, more_neighbours_asked_for_than_there_are)
     EXPECT_EQ(3u, matches[0].size());
 }
 
-// Codes too wide for a scan that keeps a distance and an index in 31 bits.
+// too wide for keys of 31 bits
 TEST(IIB_MatcherEdges, very_wide_codes)
 {
     MatcherOracle oracle;
@@ -182,7 +181,7 @@ TEST(IIB_MatcherEdges, cross_check_with_compact_result)
     EXPECT_TRUE(matches[0].empty());
 }
 
-// Found by fuzzing: the train descriptors had no more than as many neighbours as there were of themselves.
+// Found by fuzzing: a train descriptor had too few neighbours.
 TEST(IIB_MatcherEdges, cross_check_with_more_neighbours_than_trains)
 {
     MatcherOracle oracle;
@@ -211,24 +210,10 @@ TEST(IIB_MatcherEdges, umat_queries_trains_and_masks)
     expectEqual(expected, actual);
 }
 
-TEST(IIB_MatcherEdges, views_and_later_changes_of_the_matrices)
-{
-    Mat train = ladder(0, 20), wide(20, BYTES + 30, CV_8U, Scalar(255));
-    train.copyTo(wide.colRange(7, 7 + BYTES));
-    const Ptr<HierarchicalMatcher> matcher = matcherOf({wide.colRange(7, 7 + BYTES)});
-    wide.setTo(0);
-    std::vector<DMatch> matches;
-    matcher->match(train, matches);
-    for (int i = 0; i < 20; i++)
-        EXPECT_EQ(i, matches[i].trainIdx);
-}
-
 TEST(IIB_MatcherEdges, bad_input_throws)
 {
     std::vector<DMatch> matches;
     const Ptr<HierarchicalMatcher> matcher = matcherOf({ladder(0, 5)});
-    EXPECT_THROW(matcher->match(Mat(3, BYTES - 1, CV_8U, Scalar(0)), matches), cv::Exception);
-    EXPECT_THROW(matcher->match(Mat(3, BYTES, CV_32F, Scalar(0)), matches), cv::Exception);
     EXPECT_THROW(matcher->add(Mat(3, BYTES + 1, CV_8U, Scalar(0))), cv::Exception);
     EXPECT_EQ(1u, matcher->getTrainDescriptors().size());
     for (Size size : {Size(4, 2), Size(5, 1), Size(5, 3)})
@@ -237,8 +222,6 @@ TEST(IIB_MatcherEdges, bad_input_throws)
     EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(1, Mat(2, 5, CV_32S, Scalar(1)))),
             cv::Exception);
     EXPECT_THROW(matcher->match(ladder(0, 2), matches, std::vector<Mat>(2)), cv::Exception);
-    Mat indices, distances;
-    EXPECT_THROW(matcher->knnMatchArrays(ladder(0, 2), indices, distances, 0), cv::Exception);
     EXPECT_THROW(matcher->setMode(3), cv::Exception);
     EXPECT_THROW(matcher->setThresholds({0.1f, 0.2f, 0.3f}), cv::Exception);
     EXPECT_THROW(matcher->setThresholds({1.5f}), cv::Exception);
@@ -249,7 +232,7 @@ TEST(IIB_MatcherEdges, bad_input_throws)
 }
 
 #if defined __linux__ && !defined __SANITIZE_ADDRESS__ && !defined __SANITIZE_THREAD__
-//! The process gets no more than so many bytes beside those that it has.
+//! Limits the process to this many further bytes.
 struct LittleMemory
 {
     rlimit before;
@@ -380,7 +363,7 @@ TEST(IIB_MatcherEdges, more_neighbours_than_there_can_be_are_refused)
     EXPECT_EQ(Size(100, 2), indices.size());
 }
 
-// Columns of wider matrices, and results as numbers and rows of any kind.
+// Columns of wider matrices, which may change later, and results as numbers and rows of any kind.
 TEST(IIB_MatcherEdges, takes_views_and_gives_vectors)
 {
     Mat wide(40, 100, CV_8U);
@@ -398,10 +381,11 @@ TEST(IIB_MatcherEdges, takes_views_and_gives_vectors)
     EXPECT_EQ(expectedDistances.at<int>(8, 0), bits[8][0]);
     std::vector<int> nearest, distance;
     matcher->add(std::vector<Mat>(1, view));
-    matcher->knnMatchArrays(view, nearest, distance);
+    wide.setTo(0);
+    matcher->knnMatchArrays(whole, nearest, distance);
     EXPECT_EQ(40u, nearest.size());
     EXPECT_EQ(39, nearest[39]);
+    EXPECT_EQ(std::vector<int>(40, 0), distance);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -6,8 +6,7 @@
 #include "../support/temporary_file.hpp"
 #include "../support/test_errors.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 // As the first version wrote them.
 const String GOOD = "%YAML:1.0\n---\nlevelSizes: [ 8, 24 ]\nmode: 2\nthresholds: [ 3.0000001192092896e-01 ]\n"
@@ -171,6 +170,31 @@ TEST(IIB_MatcherCreate, without_rows)
     EXPECT_EQ(4, images[2].rows);
 }
 
+// Fresh, with images that have no rows, and cleared.
+TEST(IIB_MatcherClone, of_a_matcher_without_rows)
+{
+    const Mat codes = randomDescriptors(1, 5, 42);
+    for (int setting = 0; setting < 3; setting++)
+    {
+        SCOPED_TRACE(setting);
+        const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create({2, 8, 32});
+        if (setting > 0)
+            matcher->add(setting == 1 ? Mat() : codes);
+        if (setting == 2)
+            matcher->clear();
+        Ptr<HierarchicalMatcher> copy;
+        ASSERT_NO_THROW(copy = matcher->copy());
+        ASSERT_NO_THROW(matcher->clone(false));
+        EXPECT_EQ(matcher->getTrainDescriptors().size(), copy->getTrainDescriptors().size());
+        EXPECT_EQ(matcher->levelSizes(), copy->levelSizes());
+        copy->add(codes);
+        std::vector<DMatch> matches;
+        copy->match(codes, matches);
+        EXPECT_EQ(5u, matches.size());
+        EXPECT_TRUE(matcher->empty() || setting == 1);
+    }
+}
+
 TEST(IIB_MatcherCreate, recommended)
 {
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
@@ -230,5 +254,4 @@ TEST(IIB_MatcherCreate, save_write_load_and_read_in_all_directions)
     });
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -7,8 +7,7 @@
 
 #include <thread>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const std::vector<int> LEVELS = {2, 8, 32};
 
@@ -44,7 +43,7 @@ TEST_P(IIB_Matcher_Threads, same_result_for_every_number)
     setNumThreads(before);
 }
 
-// Each thread asks in its own way; the answers are those that it gets alone.
+// Threads call different functions; each result is that of a single thread.
 TEST_P(IIB_Matcher_Threads, one_object_serves_many)
 {
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(LEVELS, GetParam(), 0.35f, true);
@@ -95,7 +94,7 @@ struct OptimizationToggle
     ~OptimizationToggle() { setUseOptimized(before); }
 };
 
-// Codes are packed for the instruction set at hand when they are added; a later change of it must not matter.
+// Codes are packed for the instruction set when they are added; a later change must not matter.
 typedef testing::TestWithParam<std::tuple<int, bool, bool>>
         IIB_Matcher_Toggle;  // mode, cross-check, optimized at add
 
@@ -144,5 +143,4 @@ INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Toggle,
                                  (int)HierarchicalMatcher::ADAPTIVE),
                 testing::Bool(), testing::Bool()));
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -12,7 +12,7 @@ namespace oracle {
 
 typedef cv::Mat_<int> Map;
 
-//! Local normalization once more, pixel by pixel: of CV_8U or CV_16U, the same integers as the library's.
+//! Naive local normalization of CV_8U or CV_16U, with the library's integers.
 cv::Mat normalizeLocally(const cv::Mat& grey, double sigma);
 
 //! Its definition, with Gaussian filters in floats: 128 + 40 (I - G*I) / (sqrt(G*(I - G*I)^2) + 2) of CV_8U.

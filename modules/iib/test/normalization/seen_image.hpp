@@ -8,7 +8,7 @@
 
 namespace opencv_test {
 
-//! Keeps the image that it is given and finds nothing.
+//! Stores its image, and finds no keypoints.
 class CaptureDetector : public Feature2D
 {
 public:

@@ -6,8 +6,7 @@
 #include "normalization_oracle.hpp"
 #include "seen_image.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 void expectOracle(const Mat& image, float sigma)
 {
@@ -97,5 +96,4 @@ TEST(IIB_Normalization, golden_hash)
     EXPECT_EQ(CV_BIG_UINT(0xa3599b23675f00b3), hashOf(image)) << std::hex << hashOf(image);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -8,8 +8,7 @@
 
 /* Real images, below OPENCV_TEST_DATA_PATH: illumination/<set>/<sequence>. They belong to their authors and are not
  part of the project; without them these tests skip. */
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 String textFile(const String& name) { return cvtest::findDataFile("illumination/" + name, false); }
 
@@ -85,5 +84,4 @@ TEST(IIB_Real, leuven_with_orb_keypoints)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

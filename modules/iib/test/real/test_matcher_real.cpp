@@ -6,8 +6,7 @@
 #include "../support/describe.hpp"
 
 /* The matcher on descriptors of real images, below OPENCV_TEST_DATA_PATH; without them these tests skip. */
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! The default descriptor of the same FAST points in two images of a still camera.
 struct RealPair
@@ -86,5 +85,4 @@ TEST(IIB_Real, adaptive_keeps_the_correct_matches)
         }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -4,13 +4,12 @@
 
 #include "../support/describe.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 struct DetectorGain
 {
     Ptr<Feature2D> detector;
-    double gain;  //!< right matches at normalized points by those at plain points, a little less than was measured
+    double gain;  //!< ratio of correct matches, normalized to plain; slightly below the measured value
 };
 
 TEST(IIB_NormalizedDetector, right_matches_by_changed_light)
@@ -36,5 +35,4 @@ TEST(IIB_NormalizedDetector, right_matches_by_changed_light)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -6,8 +6,7 @@
 
 #include <numeric>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 struct PresetCase
 {
@@ -145,5 +144,4 @@ TEST(IIBPreset, some_stand_a_moved_camera)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

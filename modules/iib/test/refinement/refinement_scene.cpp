@@ -12,7 +12,7 @@ namespace opencv_test {
 
 namespace {
 
-const int FINE = 4;  //!< a camera's pixel is the mean of so many times so many
+const int FINE = 4;  //!< a camera's pixel is the mean of FINE x FINE pixels
 const Size SIZE(640, 480);
 
 Mat photographed(const Mat& fine)
@@ -39,7 +39,7 @@ RefinementScene::RefinementScene(int seed)
     RNG(seed).fill(grain, RNG::UNIFORM, 0, 256);
     resize(scene(SIZE * 2, seed), shapes, SIZE * FINE, 0, 0, INTER_CUBIC);
     resize(grain, grain, SIZE * FINE, 0, 0, INTER_CUBIC);
-    // Into a matrix of its own: in place, to another depth, addWeighted() would read what it writes.
+    // not in place: addWeighted() to another depth would read its own output
     addWeighted(shapes, .3, grain, .6, 0, fine, CV_32F);
     GaussianBlur(fine, fine, Size(), 2);
     images[0] = noisy(photographed(fine), 2 * seed + 1);

@@ -7,10 +7,9 @@
 
 #include <set>
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
-//! A scene, and what propagateMatches() makes of some of its matches.
+//! A scene, and propagateMatches() of some of its matches.
 class IIB_Propagation : public testing::Test
 {
 protected:
@@ -30,7 +29,7 @@ protected:
         return propagate(matches, scene().images[1], scene().keypoints[0], scene().keypoints[1]);
     }
 
-    //! One match of so many.
+    //! Every n-th match.
     static std::vector<DMatch> some(int step)
     {
         std::vector<DMatch> matches;
@@ -236,5 +235,4 @@ TEST_F(IIB_Propagation, without_matches_all_is_empty_and_errors_say_what_is_wron
     });
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

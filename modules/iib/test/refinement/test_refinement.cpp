@@ -8,18 +8,17 @@
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const RefinementScene& scene() { return RefinementScene::seven(); }
 
-//! Of the scene's matches in other images.
+//! Refines the scene's matches in other images.
 Refined refineIn(const Mat& image1, const Mat& image2)
 {
     return refine(image1, scene().keypoints[0], image2, scene().keypoints[1], scene().matches);
 }
 
-//! How many of the refined points are within a quarter of a pixel of the truth, of those that should be.
+//! Share of refined points within a quarter of a pixel of the truth.
 double rightShare(const Refined& r, const Matx22d& linear, const Vec2d& shift)
 {
     int right = 0;
@@ -105,7 +104,7 @@ TEST(IIB_Refinement, starts_with_the_difference_of_angles)
     }
 }
 
-// What matchRotated finds, and what codes of the gradients' direction match, whose keypoints tell no angle.
+// Matches of matchRotated, and of ORIENTATION_GRADIENT, whose keypoints have no angle.
 TEST(IIB_Refinement, follows_turned_images_that_are_matched_in_either_way)
 {
     for (double degrees : {0., 30., 90., 135., 200.})
@@ -166,7 +165,7 @@ TEST(IIB_Refinement, starts_with_the_ratio_of_sizes)
     }
 }
 
-// Sizes of keypoints differ by up to eight times, so that patches may be larger than moves.
+// With wrong sizes of keypoints, up to eight times.
 TEST(IIB_Refinement, no_point_moves_by_two_pixels)
 {
     std::vector<KeyPoint> second = scene().keypoints[1];
@@ -182,7 +181,7 @@ TEST(IIB_Refinement, no_point_moves_by_two_pixels)
     EXPECT_GT(countNonZero(r.similarities > 0), .3 * r.points2.rows);
 }
 
-// Identical images, and a camera that moved by whole pixels: nothing is left to refine, and nothing is as sure.
+// Identical images, and shifts by whole pixels: errors and standard deviations are small.
 TEST(IIB_Refinement, right_starts_are_the_best_there_are)
 {
     const Mat image = scene().images[0];
@@ -218,7 +217,7 @@ TEST(IIB_Refinement, right_starts_are_the_best_there_are)
     }
 }
 
-// A still camera, one of its pictures through JPEG: starts are right to the last digit.
+// A still camera, one of its pictures through JPEG: detected points are exact.
 TEST(IIB_Refinement, right_starts_of_a_compressed_image)
 {
     if (!haveImageWriter("image.jpg"))
@@ -337,5 +336,4 @@ TEST(IIB_Refinement, without_matches_all_is_empty_and_errors_say_what_is_wrong)
             call(image, image, {KeyPoint(3, 3, 0)}, match[0]));
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -7,8 +7,7 @@
 
 #include "opencv2/imgproc.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 double median(std::vector<double> values)
 {
@@ -29,7 +28,7 @@ struct Errors
         sigmas.push_back(inSigmas(error, covariance));
     }
 
-    //! The share that is inside of so many standard deviations.
+    //! The share of errors below this many standard deviations.
     double inside(double sigma) const
     {
         return std::count_if(sigmas.begin(), sigmas.end(), [&](double s) { return s < sigma; }) /
@@ -233,5 +232,4 @@ TEST(IIB_RefinementAccuracy, photographs_by_other_lamps)
     EXPECT_LT(errors.inside(2), .95);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

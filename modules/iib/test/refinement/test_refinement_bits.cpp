@@ -8,8 +8,7 @@
 
 #include "opencv2/imgproc.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! refineMatches as its documentation says it, on doubles: for keypoints without angles and of one size.
 class Oracle
@@ -26,7 +25,7 @@ public:
 
     Result align(const Point2d& detected1, const Point2d& detected2) const
     {
-        // the patch lies on whole pixels; the point, beside its centre, moves with it
+        // the patch lies on whole pixels; the point moves with it
         const Vec2d point1(cvRound(detected1.x), cvRound(detected1.y)), point2(detected2.x, detected2.y);
         const Vec2d beside = Vec2d(detected1.x, detected1.y) - point1;
         const Result refused = {false, point2, -1};
@@ -35,7 +34,7 @@ public:
         const double contrast = deviation(fixed);
         if (!normalize(fixed))
             return refused;
-        // derivatives by x, y and a linear warp, less what changes of brightness and contrast explain
+        // derivatives by x, y and a linear warp, less the share of brightness and contrast
         std::vector<std::vector<double>> derivatives(6);
         for (int d = 0; d < 2; d++)
         {
@@ -181,7 +180,7 @@ TEST(IIB_RefinementOracle, agrees_with_the_documentation)
 }
 
 // The same bits on every machine and build. Images and keypoints are made of integers alone. A change of the algorithm
-// may change them; then the numbers are those that a failure prints.
+// may change them; a failure prints the new numbers.
 TEST(IIB_RefinementGolden, bits)
 {
     const Mat whole = texture(Size(330, 250), CV_8U, 11);
@@ -215,5 +214,4 @@ TEST(IIB_RefinementGolden, bits)
     expectHash(CV_BIG_UINT(0xf5d5074e5807b25f), points2);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

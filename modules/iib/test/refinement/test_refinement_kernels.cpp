@@ -5,10 +5,9 @@
 #include "../../src/refinement/kernels/kernels.hpp"
 #include "../support/test_images.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
-//! Kernels beside what they say they do, written down one value after the other.
+//! Kernels beside scalar loops.
 class IIB_RefinementKernels : public testing::Test
 {
 protected:
@@ -36,7 +35,7 @@ protected:
     Integers integers;
 };
 
-const int SHIFTS = 5;  //!< of where rows and patches begin in memory
+const int SHIFTS = 5;  //!< alignments of rows and patches
 
 TEST_F(IIB_RefinementKernels, smooth)
 {
@@ -91,7 +90,7 @@ TEST_F(IIB_RefinementKernels, sample)
         PatchGrid grid = {Point(), Point(step() * 2 / 3, step() / 3), Point(step() / 3, step() * 2 / 3)};
         if (trial == 1)
             grid = {Point(), Point(131072, 0), Point(0, 131072)};
-        Point least, most;  // of what is added to the first place
+        Point least, most;  // offsets from the first sample
         for (int i : {0, PATCH - 1})
             for (int j : {0, PATCH - 1})
             {
@@ -121,7 +120,7 @@ TEST_F(IIB_RefinementKernels, sample)
     }
 }
 
-TEST_F(IIB_RefinementKernels, look)
+TEST_F(IIB_RefinementKernels, coarseSums)
 {
     const int side = 64, weights[] = {1, 2, 3, 4, 4, 3, 2, 1};
     for (int trial = 0; trial < 50; trial++)
@@ -131,19 +130,19 @@ TEST_F(IIB_RefinementKernels, look)
         const Point corner(20 + trial % SHIFTS, 20);
         const auto step = [&] { return integers.between(-131072, 131072); };
         const Point column(step(), step());
-        Point rows[LOOK];
+        Point rows[COARSE_PIXELS];
         for (Point& row : rows)
             row = Point(step(), step());
         const uchar* const pixels1 = &first[trial % SHIFTS];
         const uchar* const pixels2 = &second[corner.y * side + corner.x];
-        const LookSums actual = kernels.look(pixels1, side, pixels2, side, rows, column);
+        const CoarseSums actual = kernels.coarseSums(pixels1, side, pixels2, side, rows, column);
         int a = 0, b = 0, aa = 0, bb = 0, ab = 0, all = 0;
-        for (int y = 0; y < LOOK; y++)
-            for (int x = 0; x < LOOK; x++)
+        for (int y = 0; y < COARSE_PIXELS; y++)
+            for (int x = 0; x < COARSE_PIXELS; x++)
             {
                 const Point place = rows[y] + x * column;
                 const int weight = weights[x] * weights[y];
-                const int one = pixels1[(LOOK_APART * y) * side + LOOK_APART * x] - 128;
+                const int one = pixels1[(COARSE_STEP * y) * side + COARSE_STEP * x] - 128;
                 const int other = pixels2[(place.y >> 16) * side + (place.x >> 16)] - 128;
                 all += weight;
                 a += weight * one;
@@ -152,7 +151,7 @@ TEST_F(IIB_RefinementKernels, look)
                 bb += weight * other * other;
                 ab += weight * one * other;
             }
-        EXPECT_EQ(int(LookSums::WEIGHTS), all);
+        EXPECT_EQ(int(CoarseSums::WEIGHTS), all);
         EXPECT_EQ(a, actual.first);
         EXPECT_EQ(b, actual.second);
         EXPECT_EQ(aa, actual.firstSquares);
@@ -287,5 +286,4 @@ TEST_F(IIB_RefinementKernels, subtract_and_autocorrelate)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -47,7 +47,7 @@ void addPixel(const Mat& grey, int y, int x, int64 sums[VALUES])
         sums[i] += values[i];
 }
 
-//! The edge of 2 x 2 pixels nearest to a position, within those that count. All in units of 2 pixels.
+//! The nearest edge of 2 x 2 pixels, clamped, in units of 2 pixels.
 int edge(double position, int size, int border)
 {
     const bool reflected = border == IIB::BORDER_REFLECT;

@@ -18,7 +18,7 @@ Mat describe(IIB& iib, InputArray image, const std::vector<KeyPoint>& keypoints,
 void expectOracle(IIB& iib, const Mat& image, const std::vector<KeyPoint>& keypoints,
         const std::vector<Mat>& extra = std::vector<Mat>());
 
-//! What matching two images of the same view gave.
+//! Counts of matchDetected().
 struct DetectedMatches
 {
     size_t keypoints[2];

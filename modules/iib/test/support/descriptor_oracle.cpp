@@ -272,7 +272,7 @@ std::vector<bool> quadBits(const IIB& iib, const Cells& cells, int channel, int 
     return mapQuad(iib.getMapping(), comparable(q));
 }
 
-//! The bits of a level, of all quads or those of the selection, in the order the header gives.
+//! The bits of a level, of all quads or of the selection, in the descriptor's order.
 std::vector<bool> levelBits(const IIB& iib, const Cells& cells, int channels, int level)
 {
     std::vector<std::pair<uint64, bool>> bits;

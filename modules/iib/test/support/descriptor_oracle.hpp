@@ -31,7 +31,7 @@ cv::Mat describe(const cv::iib::IIBDescriptorExtractor& iib, const cv::Mat& grey
 //! Sobel's, of such pixels.
 cv::Point gradient(const cv::Mat& image, int y, int x);
 
-//! BORDER_REFLECT_101, which is never needed more than twice; what is further is the first pixel.
+//! Up to two reflections by BORDER_REFLECT_101; pixel 0 beyond.
 int64 reflectTo(int64 v, int limit);
 
 //! The bits of one level of MAPPING_BOXES. @param angle in degrees; negative if the boxes are upright.

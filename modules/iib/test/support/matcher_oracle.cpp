@@ -14,7 +14,7 @@ Mat randomMask(uint64 seed, int rows, int cols, double share)
     return values < share;
 }
 
-// How far a float may be from the number that it stands for, as a part of it.
+// Relative distance of a float from its decimal number.
 static const double EPSILON = 1. / (1 << 23);
 
 bool MatcherOracle::passes(const uchar* query, const uchar* train)
@@ -32,7 +32,7 @@ bool MatcherOracle::passes(const uchar* query, const uchar* train)
     return true;
 }
 
-// What ADAPTIVE compares first: all levels but the last, and every fourth word of four bytes of the last.
+// The bytes that ADAPTIVE compares first: all levels but the last, and every fourth word of the last.
 static std::vector<int> sampledBytes(const std::vector<int>& levelSizes)
 {
     std::vector<int> bytes;
@@ -44,8 +44,8 @@ static std::vector<int> sampledBytes(const std::vector<int>& levelSizes)
     return bytes;
 }
 
-// Gives up the pairs whose partial distance is more than 1.75 sigma above the query's least so far, a block of train
-// codes at a time. Masked pairs count in no way.
+// Drops the pairs whose partial distance exceeds the query's least so far by more than 1.75 sigma, a block of train codes at
+// a time.
 void MatcherOracle::keepAdaptive(const Mat& queries, Matches& found)
 {
     const std::vector<int> bytes = sampledBytes(levelSizes);
@@ -53,7 +53,7 @@ void MatcherOracle::keepAdaptive(const Mat& queries, Matches& found)
     std::vector<int> starts(1, 0);
     for (size_t i = 0; i < images.size(); i++)
         starts.push_back(starts.back() + images[i].rows);
-    compared = all;  // of which the rest of the given up pairs is taken away again
+    compared = all;  // less the rest of dropped pairs
     for (size_t q = 0; q < found.size(); q++)
     {
         std::vector<DMatch> kept;
@@ -117,7 +117,7 @@ Matches MatcherOracle::candidates(const Mat& queries)
 Matches MatcherOracle::knn(const Mat& queries, int k)
 {
     Matches result = candidates(queries);
-    // For each train descriptor, (distance, query) in ascending order.
+    // of each train descriptor: (distance, query)
     std::map<std::pair<int, int>, std::vector<std::pair<float, int>>> backwards;
     for (size_t q = 0; q < result.size(); q++)
         for (size_t i = 0; i < result[q].size(); i++)

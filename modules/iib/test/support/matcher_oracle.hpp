@@ -20,8 +20,8 @@ struct MatcherOracle
 {
     std::vector<Mat> images, masks;
     std::vector<int> levelSizes;
-    std::vector<float> thresholds;  //!< of the paper's rule; empty: all pairs count
-    int adaptiveBlock;  //!< ADAPTIVE: train codes that are looked at before any is given up; 0: it is not on
+    std::vector<float> thresholds;  //!< of THRESHOLD; empty: another mode
+    int adaptiveBlock;  //!< ADAPTIVE: train codes that are compared before any is dropped; 0: another mode
     bool crossCheck;
     float maxRatio;
     double compared, all;  //!< bits, after a call
@@ -29,7 +29,6 @@ struct MatcherOracle
     MatcherOracle() : adaptiveBlock(0), crossCheck(false), maxRatio(1), compared(0), all(0) {}
     Matches knn(const Mat& queries, int k);
     Matches radius(const Mat& queries, int radius);
-    //! With these images and parameters.
     Ptr<HierarchicalMatcher> matcher() const;
 
 private:
@@ -38,12 +37,11 @@ private:
     void keepAdaptive(const Mat& queries, Matches& candidates);
 };
 
-//! The k nearest, or for k = 0 all within a radius, as the library searches for them in chunks of these sizes: among
-//! the oracle's images, with its masks and by its rules.
+//! The library's search in chunks of these sizes: the k nearest, or for k = 0 all within a radius.
 Matches searched(const MatcherOracle& oracle, const Mat& queries, int k, int radius, const ScanChunk& chunk,
         SearchCost& cost);
 
-//! Five train images of 2, 8 and 32 bytes a level, one of them empty, one of a single row.
+//! Five train images with levels of 2, 8 and 32 bytes; one is empty, one has a single row.
 MatcherOracle oracleOfSeveralImages();
 
 //! A mask for each image of oracleOfSeveralImages(), two of them empty: all pairs allowed.

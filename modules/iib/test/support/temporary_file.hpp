@@ -28,7 +28,7 @@ inline std::string readFile(const String& name)
     return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
 }
 
-//! A name for a file that goes with the object.
+//! A file name; the destructor removes the file.
 struct TemporaryFile
 {
     String name;
@@ -38,7 +38,7 @@ struct TemporaryFile
     std::string read() const { return readFile(name); }
 };
 
-//! A folder that goes with the object and with all that is in it.
+//! A folder; the destructor removes it with its content.
 struct TemporaryFolder
 {
     String name;
@@ -46,7 +46,7 @@ struct TemporaryFolder
     ~TemporaryFolder() { utils::fs::remove_all(name); }
 };
 
-//! Calls check(name) for files that hold an object, of every format: as save() writes them, and write() of its class.
+//! Calls check(name) for files of every format, of save() and of write().
 template <typename Class, typename Check> void forEachFileOf(const Class& object, const Check& check)
 {
     for (const char* extension : {".yml", ".xml", ".json"})
@@ -59,7 +59,7 @@ template <typename Class, typename Check> void forEachFileOf(const Class& object
         }
 }
 
-//! A file that is as it was at the end, whatever is written to it meanwhile.
+//! A file; the destructor restores its content.
 struct RestoredFile
 {
     const String name;
@@ -70,7 +70,7 @@ struct RestoredFile
 };
 
 #ifdef __linux__
-//! No file grows beyond this many bytes, as on a full disk.
+//! No file grows beyond this size, as on a full disk.
 struct FullDisk
 {
     rlimit before;

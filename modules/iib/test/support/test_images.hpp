@@ -29,7 +29,7 @@ Mat_<int> randomSelection(int count, const std::vector<int>& ends, const std::ve
 int countCorrect(const std::vector<DMatch>& matches, const std::vector<KeyPoint>& queries,
         const std::vector<KeyPoint>& trains, const Matx33d& homography = Matx33d::eye());
 
-//! A scene, and the same by other light, rotated clockwise about its centre; 600 of ORB's points in each.
+//! A scene, the same under changed illumination and rotated clockwise about its centre, and 600 ORB points in each.
 struct RotatedPair
 {
     Mat images[2];

@@ -9,8 +9,7 @@
 @defgroup iib_index Binary codes in files, searched in place
 */
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @addtogroup iib_index
 //! @{
@@ -106,7 +105,6 @@ public:
 
 //! @}
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

@@ -7,37 +7,33 @@
 
 #include "opencv2/iib/features.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @addtogroup iib
 //! @{
 
 /** @brief Illumination-insensitive binary (IIB) descriptor @cite Lin2023IIB.
 
-Each keypoint has a region of support (ROS): a square with centre KeyPoint::pt and side
-`scaleFactor * KeyPoint::size`, in pixels. Level g = 1..G (the granularity) cuts it into a grid of
-2^g x 2^g cells, whose edges are the real positions rounded to whole pixels. Four sibling cells make
-a *quad*, and a mapping turns their four mean values into bits, in each image channel. Light changes
-the values, but seldom the order among neighbours.
+Each keypoint has a region of support (ROS): a square with centre KeyPoint::pt and side `scaleFactor * KeyPoint::size`, in
+pixels. Level g = 1..G (the granularity) divides it into a grid of 2^g x 2^g cells, whose edges are rounded to whole
+pixels. Four sibling cells make a *quad*. In each image channel, a mapping turns their four means into bits. Changed
+illumination changes the means, but seldom their order among neighbours.
 
-A ROS side under 2^G pixels is raised to 2^G, so that no cell is empty. #Border says what becomes of a ROS that leaves
-the image. If a cell has no pixel at all, its quad gets the bits of four equal means.
+A ROS side under 2^G pixels is raised to 2^G, so that no cell is empty. #Border defines the treatment of a ROS that leaves the
+image. If a cell has no pixel, its quad gets the bits of four equal means.
 
-Levels come coarse first, in whole bytes: the descriptor of granularity G-1 is a prefix of the one of G, unless the ROS is so
-small that G raises it. The order of bits within a level, #MAPPING_BOXES and what becomes of pixels are in the module's
-doc/format.md, bit by bit.
+Levels come coarse first, in whole bytes: the descriptor of granularity G-1 is a prefix of the one of G, unless the side of the
+ROS is raised. The module's doc/format.md defines every bit.
 
 The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives the same bits for
 every instruction set, thread count and build. One object may serve several threads as long as none
-changes its parameters. As everywhere in OpenCV, cv::setNumThreads is not to be called meanwhile.
+changes its parameters or calls cv::setNumThreads.
 
-**Files.** Algorithm::save and Feature2D::write store the parameters and the detector. save fails where the disk is
-full, and leaves the old file; write(filename) is OpenCV's own, which does not check what it writes. Algorithm::load and
-Feature2D::read take either kind of file, but on Windows, where save takes names in UTF-8 as well, only by names of the
-code page: loadFromString takes what a file of another name holds. ORB, HessianDetector and NormalizedDetector come back with their parameters. A
-detector of any other class must be set by setDetector before read: files hold its name and what its own write() tells,
-which its read() gets; read throws a cv::Exception if the detector that is set is of another class.
+**Files.** Algorithm::save and Feature2D::write store the parameters and the detector. Unlike write(filename), save checks for
+errors, and keeps the old file if the disk is full. Algorithm::load and Feature2D::read take either kind of file. On Windows,
+save takes names in UTF-8 too, but load only those in the code page (loadFromString reads the content of any file). ORB,
+HessianDetector and NormalizedDetector are restored with their parameters. A detector of any other class must be set by
+setDetector before read, which throws for another class and calls the detector's own read().
  */
 class CV_EXPORTS_W IIBDescriptorExtractor : public Feature2D
 {
@@ -67,21 +63,20 @@ public:
         MAPPING_BOXES  //!< boxes on overlapping grids instead of cells, see doc/format.md; granularity 1 to 5
     };
 
-    //! What becomes of a keypoint whose ROS leaves the image. Inside, all give the same bits.
+    //! Treatment of keypoints whose ROS leaves the image.
     enum Border
     {
-        BORDER_CLAMP,  //!< it stays; only pixels of the image count (of a rotated ROS, those of the border repeat)
-        BORDER_DROP,  //!< it is removed, as Feature2D::compute documents; a rotated ROS counts as rotated, by
-                      //!< #ORIENTATION_GRADIENT at any angle
-        BORDER_REFLECT  //!< it stays; the channels are reflected once at the image's border (BORDER_REFLECT_101)
+        BORDER_CLAMP,  //!< kept; only pixels of the image count (for a rotated ROS, border pixels are repeated)
+        BORDER_DROP,    //!< removed; a rotated ROS counts as rotated, for #ORIENTATION_GRADIENT by any angle
+        BORDER_REFLECT  //!< kept; the channels are reflected once at the image's border (BORDER_REFLECT_101)
     };
 
     //! How ROS and gradients are rotated.
     enum Orientation
     {
-        ORIENTATION_NONE,  //!< not at all: the best where cameras stay upright
-        ORIENTATION_KEYPOINT,  //!< by KeyPoint::angle, in degrees, clockwise in the image; a negative one means upright
-        ORIENTATION_GRADIENT  //!< by the direction that prevails among the gradients in the ROS, see setOrientation
+        ORIENTATION_NONE,      //!< not at all: best for upright cameras
+        ORIENTATION_KEYPOINT,  //!< by KeyPoint::angle, in degrees, clockwise in the image; negative: upright
+        ORIENTATION_GRADIENT   //!< by the prevailing direction of gradients in the ROS, see setOrientation
     };
 
     /** @brief Creates an extractor.
@@ -91,8 +86,8 @@ public:
     @param channels a sum of #Channel values; may be 0 if there are extra channels.
     @param mapping one of #Mapping.
     @param overlap slide the 2x2 window of cells by one cell instead of two: (2^g - 1)^2 quads a level.
-    @param useOrientation whether setOrientation(#ORIENTATION_KEYPOINT) is called at once.
-    @param extraChannels number of channels of the image's size that computeWithChannels is given, 0 to 16.
+    @param useOrientation calls setOrientation(#ORIENTATION_KEYPOINT).
+    @param extraChannels number of maps for computeWithChannels, 0 to 16.
     @throws cv::Exception (StsBadArg or StsOutOfRange) for a value outside these ranges.
      */
     CV_WRAP static Ptr<IIBDescriptorExtractor> create(float scaleFactor = 2.f, int granularity = 4,
@@ -100,7 +95,7 @@ public:
             int mapping = IIBDescriptorExtractor::MAPPING_MEAN, bool overlap = false,
             bool useOrientation = false, int extraChannels = 0);
 
-    //! Learned descriptors for createPreset; doc/guide.md has what each finds in scenes that it was not trained on.
+    //! Learned descriptors for createPreset; doc/guide.md compares them on scenes that were not used for training.
     enum Preset
     {
         PRESET_S128,       //!< 16 bytes of the default's bits (paper, "Reduction of the IIB Descriptor Size")
@@ -112,46 +107,37 @@ public:
         PRESET_BALANCED,   //!< 64 bytes, for cameras that move, a ROS 1.125 times as wide
         PRESET_VIEWPOINT,  //!< 64 bytes of #MAPPING_BOXES, for cameras that move far, a ROS 1.25 times as wide
         PRESET_UNIVERSAL,  //!< 128 bytes of #MAPPING_BOXES, for light and viewpoint, a ROS 1.25 times as wide
-        PRESET_SMALL  //!< 32 bytes of #MAPPING_BOXES, for the same where 256 bits are wanted, a ROS 1.25 times as wide
+        PRESET_SMALL       //!< 32 bytes of #MAPPING_BOXES, for light and viewpoint, a ROS 1.25 times as wide
     };
 
-    /** @brief Creates an extractor with a selection that comes with the library.
+    /** @brief Creates an extractor with a learned selection.
 
-    The selections were learned by tools/training on images of still cameras, those of PRESET_BALANCED,
-    PRESET_VIEWPOINT, PRESET_UNIVERSAL and PRESET_SMALL on warped ones; the last two also on rendered walks, and half of
-    their points are those that HessianDetector finds in each image. No image of the guide's figures was among them. The
-    ROS of some is wider than `scaleFactor` says (see #Preset); getScaleFactor tells it.
+    tools/training learned the selections, on images that are not used for the guide's figures. getScaleFactor returns
+    `scaleFactor` times the preset's own factor, see #Preset.
 
     @param preset one of #Preset.
-    @param scaleFactor as in create: what a detector's keypoints need, see scaleFactorFor. The default is that of ORB,
-    which detects for a new extractor: with keypoints of another detector it finds far fewer matches. createFor sets
-    detector and factor together, createRecommended chooses both.
+    @param scaleFactor as in create, see scaleFactorFor. The default is for ORB, the default detector; keypoints of other
+    detectors need another factor. createFor sets detector and factor together, createRecommended chooses both.
     @throws cv::Exception (StsBadArg) for an unknown preset, (StsOutOfRange) for a scale factor that is not
     positive.
      */
     CV_WRAP static Ptr<IIBDescriptorExtractor> createPreset(int preset, float scaleFactor = 2.f);
 
-    /** @brief Creates an extractor for a detector's keypoints: with its scale factor, and itself behind detect and
-    detectAndCompute.
+    /** @brief Creates an extractor for a detector: sets the scale factor, and calls setDetector.
 
     @param detector one that scaleFactorFor knows, also within NormalizedDetector.
-    @param preset one of #Preset, or -1 for the paper's default descriptor (as create). Take #PRESET_UNIVERSAL first: it
-    stands changed light nearly as well and moved cameras much better, in 128 bytes, but takes more time. At the points
-    of HessianDetector it also has more right matches than #PRESET_ACCURATE where cameras stand still, at a lower
-    precision.
-    @throws cv::Exception (StsBadArg) for an unknown detector or preset, (StsNullPtr) for no detector. For a detector
-    that is not known use create(scaleFactor), with the side of the ROS by KeyPoint::size as its factor, and
-    setDetector.
+    @param preset one of #Preset, or -1 for the paper's default descriptor. Try #PRESET_UNIVERSAL first: it is nearly as
+    robust to illumination as the default, and much more robust to viewpoint, with 128 bytes, but slower.
+    @throws cv::Exception (StsBadArg) for an unknown detector or preset, (StsNullPtr) for no detector. For an unknown
+    detector call create(scaleFactor) with the ROS side divided by KeyPoint::size, and setDetector.
      */
     CV_WRAP static Ptr<IIBDescriptorExtractor> createFor(const Ptr<Feature2D>& detector, int preset = -1);
 
-    /** @brief Creates what to take first, where light, place or both change: HessianDetector and #PRESET_UNIVERSAL.
+    /** @brief Creates the recommended extractor for changed illumination and view: HessianDetector and #PRESET_UNIVERSAL.
 
-    detectAndCompute() finds and describes; match the codes with HierarchicalMatcher::createRecommended(). Photographs
-    of many megapixels are searched at a reduced size, see HessianDetector::setWorkingSize.
+    Match its descriptors with HierarchicalMatcher::createRecommended().
 
-    @param maxFeatures keypoints of an image, the strongest; 0 keeps all. 2000 give a little more accurate poses than
-    1000.
+    @param maxFeatures number of keypoints, the strongest; 0 keeps all. 2000 give slightly more accurate poses than 1000.
     @throws cv::Exception (StsOutOfRange) for a negative number.
      */
     CV_WRAP static Ptr<IIBDescriptorExtractor> createRecommended(int maxFeatures = 1000);
@@ -164,41 +150,39 @@ public:
      */
     CV_WRAP static float scaleFactorFor(const String& detectorName);
     /** @overload
-    Looks into NormalizedDetector for its detector. AffineFeature does not tell its own: take the name of that one.
-    @throws cv::Exception (StsBadArg) for a detector that is not known, (StsNullPtr) for none. */
+    For NormalizedDetector, the factor of the detector inside. For AffineFeature, pass the name of its detector.
+    @throws cv::Exception (StsBadArg) for an unknown detector, (StsNullPtr) for none. */
     CV_WRAP static float scaleFactorFor(const Ptr<Feature2D>& detector);
     /** @overload
-    A literal would fit both of the above, since Ptr converts from any pointer. */
+    Without it, a literal would fit both overloads above. */
     static float scaleFactorFor(const char* detectorName);
 
-    //! Bytes of each level, coarse first; levels without a bit (by a selection) are left out.
-    //! Their sum is descriptorSize().
+    //! Bytes of each level, coarse first, without levels that have no bit. Their sum is descriptorSize().
     CV_WRAP virtual std::vector<int> levelSizes() const = 0;
 
     using Feature2D::compute;
     /** @brief Describes keypoints with the image and with further channels, such as depth or labels.
 
-    @param image 8U, 16U or 32F with 1, 3 (BGR) or 4 (BGRA) channels. Float values are cut into 65535
-    steps between the image's own minimum and maximum.
-    @param extraChannels as many single-channel maps as getExtraChannels(), each of the image's size, 8U,
-    16U or 32F; in C++ a single one needs no list. A cell's value is the mean of the map.
-    @param keypoints their order is kept; none is removed but by #BORDER_DROP.
-    @param descriptors keypoints.size() x descriptorSize(), CV_8U. Empty if the image or the keypoints are: after an
-    image that is empty ask whether imread found the file. It may be the matrix of the image or of a map.
+    @param image 8U, 16U or 32F with 1, 3 (BGR) or 4 (BGRA) channels. Float values are quantized to 65535
+    steps between the image's minimum and maximum.
+    @param extraChannels getExtraChannels() single-channel maps of the image's size, 8U, 16U or 32F; in C++ a single one
+    needs no list. A cell's value is the mean of the map.
+    @param keypoints their order is kept; only #BORDER_DROP removes any.
+    @param descriptors keypoints.size() x descriptorSize(), CV_8U; empty if the image or the keypoints are. It may be the
+    matrix of the image or of a map.
     @throws cv::Exception for a wrong type, size or number of maps, for pixels that are NaN or infinite, and for
-    keypoints with a NaN or infinite coordinate, a size that is not positive, or with #ORIENTATION_KEYPOINT such an
-    angle: such a keypoint has no region, and to leave it out would break the correspondence of keypoints and rows that
-    the caller counts on.
+    keypoints with a NaN or infinite coordinate, a size that is not positive, or, with #ORIENTATION_KEYPOINT, a NaN or
+    infinite angle.
      */
     CV_WRAP_AS(computeWithChannels)
     virtual void compute(InputArray image, InputArrayOfArrays extraChannels,
             CV_OUT CV_IN_OUT std::vector<KeyPoint>& keypoints, OutputArray descriptors) = 0;
 
-    //! Setters take what create() takes, and throw a cv::Exception where it does; the old value then stays.
+    //! Setters have the ranges of create(). If they throw, the old value stays.
     CV_WRAP virtual void setScaleFactor(float scaleFactor) = 0;
     CV_WRAP virtual float getScaleFactor() const = 0;
 
-    //! Changing granularity, channels, overlap or mapping, or the number of extra channels, ends a selection.
+    //! Changes of granularity, channels, overlap, mapping or the number of extra channels remove the selection.
     CV_WRAP virtual void setGranularity(int granularity) = 0;
     CV_WRAP virtual int getGranularity() const = 0;
 
@@ -211,31 +195,26 @@ public:
     CV_WRAP virtual void setOverlap(bool overlap) = 0;
     CV_WRAP virtual bool getOverlap() const = 0;
 
-    //! setOrientation of #ORIENTATION_KEYPOINT (true) or #ORIENTATION_NONE, for programs that know only these two.
+    //! setOrientation(useOrientation ? #ORIENTATION_KEYPOINT : #ORIENTATION_NONE).
     CV_WRAP virtual void setUseOrientation(bool useOrientation) = 0;
-    //! Whether there is any orientation but #ORIENTATION_NONE.
+    //! getOrientation() != #ORIENTATION_NONE.
     CV_WRAP virtual bool getUseOrientation() const = 0;
 
     /** @brief Sets how ROS and gradients are rotated: one of #Orientation, #ORIENTATION_NONE by default.
 
-    Rotation costs matches by changed light, since the angles change with the light as well. So where cameras stay
-    upright, none is best. Where they turn, the best angles are those that do not come from single keypoints:
-    matchRotated finds one angle between two images; or set KeyPoint::angle to the direction of gravity (from an IMU),
-    and use #ORIENTATION_KEYPOINT.
+    Estimated angles change with the illumination, so rotation loses matches. For upright cameras, none is best. For
+    rotated cameras, use one angle for all keypoints: matchRotated estimates it; or set KeyPoint::angle to the direction of
+    gravity (from an IMU), and use #ORIENTATION_KEYPOINT.
 
-    #ORIENTATION_GRADIENT ignores KeyPoint::angle and leaves it as it is. The angle is the peak of a smoothed histogram
-    of the directions of gradients in the circle within the ROS, weighted by their magnitudes and by a Gaussian of half
-    the radius; gradients between 32 x 32 cells of the ROS, each the mean of four points. Of keypoints with the same
-    position and size (as SIFT finds them, one for each direction) the second gets the second highest peak, and so on.
-    A descriptor of extra channels alone stays upright.
+    #ORIENTATION_GRADIENT ignores KeyPoint::angle. The angle is the peak of a smoothed histogram of gradient directions
+    between 32 x 32 cells of the ROS, weighted by magnitude and by a Gaussian of half the radius. Of several keypoints with
+    the same position and size (as SIFT finds them), the second gets the second highest peak, and so on. A descriptor of
+    extra channels alone stays upright.
 
-    Sums over upright rectangles do not rotate with a ROS, so but for #MAPPING_BOXES a rotated one is sampled: on a grid
-    of 32 x 32 points if its side is at most 64 pixels and granularity at most 5, else of 64 x 64, at the nearest pixel
-    of each, where the gradient is rotated. So angle 0 does not give the bits of angle -1: one counts samples, the other
-    all pixels.
-    A point outside the image takes the pixel that #BORDER_REFLECT reflects there, or with #BORDER_CLAMP the nearest
-    pixel of the border: the edge of the image crosses rotated cells at an angle, and cells with different numbers of
-    samples would no longer be comparable without a division. A side of more than 16384 pixels is cut to that. */
+    Except with #MAPPING_BOXES, a rotated ROS is sampled at the nearest pixels of a rotated grid: 32 x 32 points if its side
+    is at most 64 pixels and the granularity at most 5, else 64 x 64. So angle 0 does not give the bits of angle -1, which
+    uses all pixels. Points outside the image are reflected, or with #BORDER_CLAMP take the nearest pixel of the border. A
+    side of more than 16384 pixels is reduced to that. */
     CV_WRAP virtual void setOrientation(int mode) = 0;
     CV_WRAP virtual int getOrientation() const = 0;
 
@@ -246,24 +225,23 @@ public:
     CV_WRAP virtual void setBorder(int border) = 0;
     CV_WRAP virtual int getBorder() const = 0;
 
-    //! The detector behind detect and detectAndCompute; ORB by default. It does not change the scale factor. One of
-    //! another library gets images of 16U and 32F as 8-bit grey, from the image's own minimum to its maximum. Masks are
-    //! CV_8UC1 of the image's size, or empty. Throws if it is null, or is this extractor, also within other extractors
-    //! and NormalizedDetector.
+    //! Sets the detector of detect and detectAndCompute, ORB by default, but not the scale factor. Detectors of other
+    //! libraries get 16U and 32F as 8-bit grey, stretched from the image's minimum to its maximum. Masks are CV_8UC1 of the
+    //! image's size, or empty. Throws if it is null or contains this extractor.
     CV_WRAP virtual void setDetector(const Ptr<Feature2D>& detector) = 0;
     CV_WRAP virtual Ptr<Feature2D> getDetector() const = 0;
 
     /** @brief Restricts the descriptor to chosen quads (paper, "Reduction of the IIB Descriptor Size").
 
-    @param quads CV_32S, a row a quad, each at most once: level g (1..G, not descending), channel (its place among the
-    channels in use, extra channels last), row and column of the quad's top left cell in the level's grid (0..2^g - 2;
-    odd positions, between siblings, are allowed and need no `overlap`), and a bit mask of the mapping's bits to keep
-    (bit 0 is the first). With #MAPPING_BOXES row and column are those of a box, 0..n - 1. Empty: all quads or boxes
-    again.
+    @param quads CV_32S with 5 columns and a row for each quad, which occurs once; empty: all quads or boxes.
+    - level g, 1..G, not descending;
+    - channel: its place among the channels in use, extra channels last;
+    - row and column of the quad's top left cell, 0..2^g - 2, also odd; with #MAPPING_BOXES those of a box, 0..n - 1;
+    - mask of the mapping's bits to keep; bit 0 is the first.
     @throws cv::Exception for another type or shape, levels out of order or values out of range.
      */
     CV_WRAP virtual void setSelection(InputArray quads) = 0;
-    //! The chosen quads, as setSelection takes them; empty if there is no selection.
+    //! The argument of setSelection; empty if there is no selection.
     CV_WRAP virtual Mat getSelection() const = 0;
 };
 
@@ -271,7 +249,6 @@ typedef IIBDescriptorExtractor IIB;  //!< the paper's name
 
 //! @}
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

@@ -7,38 +7,37 @@
 
 #include "opencv2/iib/features.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @addtogroup iib
 //! @{
 
-/** @brief Moves the second point of each match to where the surroundings of both points agree best, and tells how sure
-that is: least-squares matching, to a tenth of a pixel and better, also where the light changed.
+/** @brief Moves the second point of each match to where the surroundings of both points agree best, and estimates the
+covariance of its place: least-squares matching, to a tenth of a pixel and better, also under changed illumination.
 
-Both images are normalized locally. The patch around the point of the first image, about 30 pixels wide, stays where it
-is. It is laid onto the second image, turned and scaled as the keypoints' angles and sizes say, and moved and deformed
-(six parameters of an affine transform, besides contrast and brightness) until the squared differences are least: the
-adjustment of
-@cite Foerstner1982 and @cite Gruen1985, solved with the matrix of the first patch alone, as the inverse compositional
-algorithm of @cite BakerMatthews2004 does. A match is refused where that moves its point by 2 pixels or more, or where
-the patches do not agree well enough after it, or no better than before and ten steps do not settle it: then it stays as
-it was detected. A point that was right before stays, and is the surest.
+Both images are normalized locally. The patch around the first point, about 30 pixels wide, stays fixed. It is placed on the
+second image, rotated and scaled by the keypoints' angles and sizes. Then six affine parameters, contrast and brightness
+are changed until the squared differences are least: the adjustment of @cite Foerstner1982 and @cite Gruen1985, solved
+by the inverse compositional algorithm of @cite BakerMatthews2004.
+
+A match is refused, and its point stays as detected, if
+- its point moves by 2 pixels or more;
+- the patches correlate by 0.5 or less at the end;
+- ten steps neither converge nor raise the correlation.
 
 @param image1, image2 as in IIBDescriptorExtractor::compute.
-@param keypoints1, keypoints2 of the first and the second image. Only the difference of their angles counts, as only the
-ratio of the sizes does; -1 is upright, 0, where the other keypoint has an angle, as after matchRotated. Where neither has
-one, patches are laid upright and, if most of the given matches lie as in an image that is turned by 10 degrees or more,
-turned so: whichever agrees better.
+@param keypoints1, keypoints2 of the first and the second image. Only the difference of their angles and the ratio of their
+sizes are used. An angle of -1 means 0 if the other keypoint has an angle, as after matchRotated. If neither has one, the
+patch starts upright; if the given matches are rotated by 10 degrees or more, also by this angle, and the better start is
+used.
 @param matches1to2 queryIdx into keypoints1, trainIdx into keypoints2.
-@param points1 N x 2, CV_32F, a row for each match, in pixels: the first points, as they were detected.
-@param points2 N x 2, CV_32F, in pixels: the second points, refined, or as they were detected where that was refused.
-@param covariances N x 3, CV_32F: xx, xy and yy of points2 given points1, in squared pixels, from the differences that
-remain and from how far these agree among neighbouring samples; never 0. Of refused matches 1, 0 and 1. Along a straight
-edge the standard deviation is a pixel or more. Errors that all matches of a pair share are not in it: a camera that moved
-by a tenth of a pixel, light that moved every shadow. The documentation's page "How sure" counts how often they hold.
-@param similarities N x 1, CV_32F: the correlation of the two patches where they agree best, above 0.5 up to 1; -1 where
-the match was refused.
+@param points1 N x 2, CV_32F, a row for each match, in pixels: the first points, as detected.
+@param points2 N x 2, CV_32F, in pixels: the second points, refined, or as detected for refused matches.
+@param covariances N x 3, CV_32F: xx, xy and yy of points2 given points1, in squared pixels, estimated from the residuals
+and their correlation among neighbouring samples; never 0. For refused matches 1, 0 and 1. Along a straight edge the standard
+deviation is a pixel or more. Errors that all matches of a pair share are not included. The documentation's page "How sure"
+measures how often the covariances hold.
+@param similarities N x 1, CV_32F: the correlation of the two patches, above 0.5 up to 1; -1 for refused matches.
 @throws cv::Exception (StsOutOfRange) for indices without a keypoint, (StsBadArg) for an empty image, and as
 IIBDescriptorExtractor::compute for images and keypoints. Without matches all outputs are empty. Outputs may also be
 vectors whose elements are rows, as std::vector<Point2f> and std::vector<Vec3d>.
@@ -47,26 +46,25 @@ CV_EXPORTS_W void refineMatches(InputArray image1, const std::vector<KeyPoint>& 
         const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches1to2, OutputArray points1,
         OutputArray points2, OutputArray covariances = noArray(), OutputArray similarities = noArray());
 
-/** @brief Refines matches as refineMatches does and adds further ones that these lead to: match propagation
+/** @brief Refines matches as refineMatches does, and adds further matches that they predict: match propagation
 @cite LhuillierQuan2002.
 
-A refined match tells where the surroundings of its point are in the second image. A keypoint without a match is tried
-where the nearest refined match, less than 100 pixels away, says it should be: with the keypoints of the second image
-within 3 pixels and a tenth of the distance, four of them, and four times at most, from new matches. What agrees best
-after least-squares matching is taken, and leads on. Only matches that two of the eight nearest ones confirm lead to
-others. For poses from views that are far apart or in other
-light: half as many right matches again, and poses that were not found without them. Where a pattern repeats, as the
-windows of a block of flats do, wrong matches that confirm each other lead to further ones as well. So for a pose call
-it twice, with all matches and with those alone that agree with a first pose, and take the pose of the two that more
-matches agree with under one scale, such as .25 pixels: under scales of their own the less exact pose may have more.
+A refined match predicts the places of keypoints less than 100 pixels from it. A keypoint without a match is compared with up
+to four keypoints of the second image within 3 pixels and a tenth of the distance from its predicted place. Up to four times,
+new matches give another prediction. The best result of least-squares matching is added, and predicts further ones. Only
+matches that at least two of their eight nearest neighbours confirm predict others.
+
+This adds about half as many correct matches for views that are far apart or under changed illumination. In repeated patterns,
+wrong matches may confirm each other. For a pose, call it twice: with all matches, and with the inliers of a first pose.
+Use the pose with more inliers under one fixed scale, such as .25 pixels.
 
 @param image1, image2, keypoints1, keypoints2 as in refineMatches; of any detector.
-@param matches1to2 on return the same matches, followed by those that were found, the most similar ones of each round
-first. Their distance is that of an empty cv::DMatch, the largest number, as no descriptors were compared; no keypoint
-of theirs is in another match.
-@param points1, points2, covariances, similarities as in refineMatches, a row for each match on return. Those that
-were found have similarities above 0.7.
-@throws cv::Exception as refineMatches. Without matches there is nothing to propagate, and all outputs are empty.
+@param matches1to2 on return the same matches, followed by the new ones, the most similar of each round first. Their
+distance is the largest float, as in an empty cv::DMatch, since no descriptors are compared. No keypoint of a new match is
+in another match.
+@param points1, points2, covariances, similarities as in refineMatches, a row for each match on return. New matches have
+similarities above 0.7.
+@throws cv::Exception as refineMatches. Without matches all outputs are empty.
  */
 CV_EXPORTS_W void propagateMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1,
         InputArray image2, const std::vector<KeyPoint>& keypoints2,
@@ -75,7 +73,6 @@ CV_EXPORTS_W void propagateMatches(InputArray image1, const std::vector<KeyPoint
 
 //! @}
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

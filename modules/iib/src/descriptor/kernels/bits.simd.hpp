@@ -8,25 +8,21 @@
 #include "more_mappings.hpp"
 #include "vectors.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-// Where comparisons lie in memory, and how they become bits of a descriptor.
-
-//! Lanes, one for each channel of a quad, that are mapped at a time.
+//! Lanes that are mapped at a time, one for each channel of a quad.
 constexpr int CHUNK = QuadPhase::CHUNK;
 
-//! A chunk in vectors V.
 template <typename V> struct Chunk
 {
     static constexpr int LANES = VTraits<V>::max_nlanes, VECTORS = CHUNK / LANES;
 };
 
-//! Packed at the low end. @param comparisons readable up to Group::SIZE bytes behind the group's first.
+//! The group's bits, packed at the low end. @param comparisons readable for Group::SIZE bytes from the group's first.
 inline unsigned bitsOf(const ChosenBits::Group& group, const uchar* comparisons)
 {
     const uchar* const bytes = comparisons + group.byte;
@@ -45,25 +41,21 @@ inline unsigned bitsOf(const ChosenBits::Group& group, const uchar* comparisons)
 inline void appendChosen(const ChosenBits& chosen, const uchar* comparisons, BitAppender& out)
 {
     freeUpperHalves();
-    BitAppender writer = out;  // a copy, which stores to uchar* surely do not change
+    BitAppender writer = out;  // a copy, since stores to uchar* may alias `out`
     for (const ChosenBits::Group& group : chosen.groups())
         writer.append(bitsOf(group, comparisons), group.count);
     out = writer;
 }
-
-// How cells are compared.
 
 inline v_int32 loadCells(const ushort* p) { return v_reinterpret_as_s32(vx_load_expand(p)); }
 inline v_int32 loadCells(const unsigned* p) { return v_reinterpret_as_s32(vx_load(p)); }
 
 inline v_int32 repeated(int v, const v_int32&) { return vx_setall_s32(v); }
 
-// The same of doubles, where products of 32 bits are too small.
-
 inline v_doubles loadCells(const double* p) { return loadDoubles(p); }
 inline v_doubles repeated(int v, const v_doubles&) { return repeatedDouble(v); }
 
-//! A vector whose comparisons are bits, a bit a lane.
+//! A vector whose comparisons give a bit for each lane.
 template <typename V> struct Lanes
 {
     V v;
@@ -95,11 +87,11 @@ template <typename V> inline unsigned operator==(const Lanes<V>& a, const Lanes<
 inline Lanes<v_int32> fourTimes(const Lanes<v_int32>& a) { return a.v << 2; }
 inline Lanes<v_doubles> fourTimes(const Lanes<v_doubles>& a) { return a.v * repeatedDouble(4); }
 
-//! floor(a / 4) is as good as a / 4: an integer is greater than both or than neither.
+//! floor(a / 4) serves as a / 4: an integer is greater than both or neither.
 inline Lanes<v_int32> quarter(const Lanes<v_int32>& a) { return a.v >> 2; }
 inline Lanes<v_doubles> quarter(const Lanes<v_doubles>& a) { return a.v * repeatedDouble(0.25); }
 
-//! Collects comparisons, from a lane on.
+//! Collects comparisons, beginning at a lane.
 struct Put
 {
     unsigned* planes;
@@ -108,7 +100,7 @@ struct Put
     void operator()(int plane, unsigned bits) const { planes[plane] |= bits << lane; }
 };
 
-//! The cells of a chunk of quads, and of those in the rows below it.
+//! The cells of a chunk of quads, and of the quads below it.
 template <typename Cell> class QuadRows
 {
 public:
@@ -117,7 +109,7 @@ public:
     //! Begins with quads whose top left cells are in row dy and columns dx, dx + 2, ..., at value `first`.
     QuadRows(const CellGrid<Cell>& cells, int dy, int dx, int first)
         : left(cells.row(dy, dx) + first), right(cells.row(dy, 1 - dx) + dx * GROUP_CHANNELS + first),
-          step(cells.rowStep())  // next to an odd column is an even one
+          step(cells.rowStep())  // right of an odd column is an even one
     {
     }
 
@@ -205,8 +197,8 @@ void parentSums(const CellGrid<Cell>& cells, CellGrid<typename BitsKernels<Cell>
     }
 }
 
-/** Compares all quads of a phase, a chunk and those below it at a time.
- @param out where QuadPhase puts the comparisons. WITH_PARENTS also stores the sums over quads. */
+/** Compares all quads of a phase, a chunk and the quads below it at a time. WITH_PARENTS also stores the sums over quads.
+ @param out comparisons in the order of QuadPhase. */
 template <typename Mapping, bool WITH_PARENTS, typename Cell, typename Parent>
 void compareQuads(const CellGrid<Cell>& cells, const LevelShape& shape, const CellEdges& edges,
         const QuadPhase& phase, CellGrid<Parent>& parents, uchar* out)
@@ -232,7 +224,7 @@ void compareQuads(const CellGrid<Cell>& cells, const LevelShape& shape, const Ce
                 quads.load(lane, x);
                 if (WITH_PARENTS)
                     storeAlternately(even, odd, lane, (x[0] + x[1]) + (x[2] + x[3]));
-                if (!heights.equal())  // the columns of a chunk are seldom equally long, the two rows often
+                if (!heights.equal())  // the two rows are often equally high
                     for (int k = 0; k < 4; k++)
                         weights[k] = weights[k] * repeated(k < 2 ? heights.first : heights.second, V());
                 const Lanes<V> weighted[4] = {
@@ -252,7 +244,7 @@ void writePhase(const CellGrid<Cell>& cells, const LevelShape& shape, const Cell
 {
     const QuadPhase phase(shape.n, index);
     const ChosenBits& chosen = shape.chosen[index];
-    // Groups of chosen bits are read beyond the last plane.
+    // readers of groups of chosen bits go beyond the last plane
     uchar buffer[MAX_QUADS * Mapping::BITS * MAX_LANES / 8 + ChosenBits::Group::SIZE];
     uchar* const whole = chosen.all() ? out.reserve(phase.rows * Mapping::BITS * phase.planeBytes()) : 0;
     compareQuads<Mapping, WITH_PARENTS>(cells, shape, edges, phase, parents, whole ? whole : buffer);
@@ -290,5 +282,4 @@ template <typename Cell> BitsKernels<Cell> bitsKernels()
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

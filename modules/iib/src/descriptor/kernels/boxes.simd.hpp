@@ -7,14 +7,13 @@
 #include "bits.simd.hpp"
 #include "boxes.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-//! As v_zip, of pairs of values.
+//! v_zip for pairs of values.
 inline void zipPairs(const v_uint32& a, const v_uint32& b, v_uint32& low, v_uint32& high)
 {
 #if CV_AVX2
@@ -28,7 +27,7 @@ inline void zipPairs(const v_uint32& a, const v_uint32& b, v_uint32& low, v_uint
 #endif
 }
 
-//! Sums that 32 bits do not hold: rare, so written plainly.
+//! For sums that exceed 32 bits: rare, so scalar.
 template <bool ROTATED>
 void sumSquareRow(const int* const rows[BOX_SQUARE][BOX_PLANES], int squares, const int64* above, int64* out)
 {
@@ -60,7 +59,7 @@ void sumSquareRow(const int* const rows[BOX_SQUARE][BOX_PLANES], int squares, co
     }
 }
 
-//! Sums of neighbouring pixels, two planes' in the halves of each 32 bits.
+//! Sums of neighbouring pixels of two planes, in the halves of each 32 bits.
 inline v_uint32 pairSums(const v_int16& low, const v_int16& high)
 {
     const v_int16 ones = vx_setall_s16(1);
@@ -69,7 +68,7 @@ inline v_uint32 pairSums(const v_int16& low, const v_int16& high)
            (v_reinterpret_as_u32(v_dotprod(high, ones)) << 16);
 }
 
-//! Four vectors' lanes side by side, a square in 128 bits.
+//! Interleaves four vectors; a square has 128 bits.
 inline void storeSquares(const v_uint32 pairs[BOX_LANES / 2], short* out)
 {
     v_uint32 a[2], b[2];
@@ -139,15 +138,15 @@ void sumSquareRow(
     }
 }
 
-/** The edge nearest to a position. As edgeAt(), which measures from `first`: here offsets are no dyadic fractions, and
- two borders with different bounds must round alike. */
+/** The edge nearest to a position. Unlike edgeAt(), it does not depend on the first edge: offsets are no dyadic fractions, and
+ must round alike for all bounds. */
 inline int boxEdge(double position, double first, double limit)
 {
-    const int shift = 1 << 30;  // on positive numbers the cast is a floor
+    const int shift = 1 << 30;  // the cast is a floor for positive numbers
     return (int)(std::min(std::max(position + 0.5, first), limit) + shift) - shift;
 }
 
-//! The compiler makes vectors of the loops, with this file's instruction set.
+// Compilers vectorize the loops of this function and the next ones.
 void edgesAlong(double centre, double side, Range bounds, const double* offsets, int* edges)
 {
     const double first = bounds.start, limit = bounds.end;
@@ -181,7 +180,6 @@ void boxEdges(const BoxFrame& f, const double (&offsets)[2][MAX_BOX_PLACES], Box
         }
 }
 
-//! The compiler makes vectors of the last loop, with this file's instruction set.
 void boxPlaces(const BoxFrame& f, const BoxGridShape& grid, const double* centres, Point2d direction,
         double side, int step, BoxPlaces& places)
 {
@@ -209,7 +207,7 @@ void boxPlaces(const BoxFrame& f, const BoxGridShape& grid, const double* centre
     }
 }
 
-//! Sums over a box as floats, from rows of corners and the places of left and right ones in them.
+//! Sums over a box as floats, from rows of corners and the places of the left and right corners.
 inline v_means boxSums(const unsigned* above, const unsigned* below, size_t left, size_t right)
 {
     const v_samples sum =
@@ -228,7 +226,7 @@ inline v_means boxSums(const int64* above, const int64* below, size_t left, size
 
 inline void storeMeans(short* out, const v_means& m) { v_pack_store(out, nearestInt(m)); }
 inline void storeMeans(int* out, const v_means& m) { v_store(out, nearestInt(m)); }
-// Two vectors at a time: half the packing, and what reads them finds them written at once.
+// Two vectors at a time take half the packing, and readers get whole vectors from the store buffer.
 inline void storeMeans(short* out, const v_means& a, const v_means& b)
 {
     v_store(out, v_pack(nearestInt(a), nearestInt(b)));
@@ -291,17 +289,17 @@ void rotatedBoxMeans(const RingRows<Sum>& integral, const BoxGridShape& grid, co
         }
 }
 
-//! A bit for each lane of as many boxes as make a vector.
+//! Stores a bit for each lane.
 inline void storeGreater(const v_int16& a, const v_int16& b, uchar* out)
 {
     storeBytes((unsigned)greaterMask(a, b), VTraits<v_int16>::max_nlanes / 8, out);
 }
 
-//! The same of two pairs of vectors, whose lanes are packed together.
+//! The same for two pairs of vectors.
 inline void storeGreater(const v_int16& a, const v_int16& b, uchar* out, const v_int16& nextA,
         const v_int16& nextB, uchar* nextOut)
 {
-#if CV_AVX512_SKX  // which compares into masks
+#if CV_AVX512_SKX  // comparisons give masks
     storeGreater(a, b, out);
     storeGreater(nextA, nextB, nextOut);
 #else
@@ -312,7 +310,7 @@ inline void storeGreater(const v_int16& a, const v_int16& b, uchar* out, const v
 #endif
 }
 
-//! Lanes whose own bit compares them with the next one, |gx| > |gy| and gx > gy; the others are compared with 0.
+//! Lanes that are compared with the next lane, |gx| > |gy| and gx > gy; the others are compared with 0.
 const short NEXT_IS_PARTNER[BOXES_TOGETHER * BOX_LANES] = {-1, 0, -1, 0, 0, 0, 0, 0, -1, 0, -1, 0, 0, 0, 0, 0,
         -1, 0, -1, 0, 0, 0, 0, 0, -1, 0, -1, 0, 0, 0, 0, 0};
 
@@ -344,14 +342,14 @@ void compareBoxes(const short* means, const BoxGridShape& grid, uchar* out)
         return v_reinterpret_as_s16(v_reinterpret_as_u64(m) >> 16) & partners;
     };
     constexpr int BOXES = LANES / BOX_LANES;
-    for (int i = 0; i < grid.n * grid.stride(); i += 2 * BOXES)  // may be more by one vector
+    for (int i = 0; i < grid.n * grid.stride(); i += 2 * BOXES)  // up to one vector more
     {
         const v_int16 m = vx_load(means + i * BOX_LANES), next = vx_load(means + (i + BOXES) * BOX_LANES);
         storeGreater(m, partnersOf(m), out + i, next, partnersOf(next), out + i + BOXES);
     }
 }
 
-//! The same of 16-bit images, which are rare: written plainly.
+//! For 16-bit images: rare, so scalar.
 void compareBoxes(const int* means, const BoxGridShape& grid, uchar* out)
 {
     const int bytes = grid.quadBytes(), below = grid.stride() * BOX_LANES;
@@ -374,7 +372,7 @@ void compareBoxes(const int* means, const BoxGridShape& grid, uchar* out)
     for (int i = 0; i < grid.n * grid.stride(); i++)
     {
         const int* const m = means + i * BOX_LANES;
-        // GCC 12 with the address sanitizer gets a condition on the lane wrong.
+        // no condition on the lane: GCC 12 miscompiles it with the address sanitizer
         const int partners[BOX_LANES] = {m[1], 0, m[3], 0, 0, 0, 0, 0};
         unsigned bits = 0;
         for (int lane = 0; lane < BOX_LANES; lane++)
@@ -403,5 +401,4 @@ template <typename T> BoxSumKernels<T> boxSumKernels()
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

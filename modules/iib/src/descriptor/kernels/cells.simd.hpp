@@ -7,8 +7,7 @@
 #include "kernels.hpp"
 #include "vectors.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -17,8 +16,7 @@ namespace {
 inline v_groups16 subtractModulo(const v_groups16& a, const v_groups16& b) { return v_sub_wrap(a, b); }
 inline v_groups32 subtractModulo(const v_groups32& a, const v_groups32& b) { return a - b; }
 
-/* n is a power of two, so that the edges of a level are a subset of those of the next. The compiler makes vectors of
- the loop, with this file's instruction set. */
+// n is a power of two, so that the edges of a level are a subset of those of the next. Compilers vectorize the loop.
 void cellEdges(Point2d corner, double side, int n, Rect bounds, CellEdges& edges)
 {
     int *const x = edges.x, *const y = edges.y;
@@ -35,7 +33,7 @@ void cellEdges(Point2d corner, double side, int n, Rect bounds, CellEdges& edges
         x[k] = x[n];
 }
 
-//! Sums over left and right cells and all pixels above them: differences of neighbouring corners in a row.
+//! Sums over left and right cells and everything above them: differences of neighbouring corners in a row.
 template <typename V> struct RowSums
 {
     V left, right;
@@ -80,7 +78,7 @@ void cellSums(const RingRows<Sum>& rows, const int* xEdges, const int* yEdges, i
 }
 
 #if IIB_SUMS_SEGMENTS
-//! Adds a pixel column, all channels of it, to a column of cells.
+//! Adds a column of pixels to a column of cells.
 void addColumn(const ushort* const* lines, const size_t channels[GROUP_CHANNELS], int x, int c,
         CellGrid<ushort>& cells)
 {
@@ -131,5 +129,4 @@ constexpr decltype(DescriptorKernels::columnCells) columnCells = 0;
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -5,8 +5,7 @@
 #include "kernels.simd.hpp"
 #include "descriptor/kernels/kernels.simd_declarations.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 const BoxKernels& boxKernels() { CV_CPU_DISPATCH(boxKernels, (), CV_CPU_DISPATCH_MODES_ALL); }
 const DescriptorKernels& descriptorKernels()
@@ -14,5 +13,4 @@ const DescriptorKernels& descriptorKernels()
     CV_CPU_DISPATCH(descriptorKernels, (), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

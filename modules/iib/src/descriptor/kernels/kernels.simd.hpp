@@ -4,14 +4,12 @@
 
 #include "boxes.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 const DescriptorKernels& descriptorKernels();
 const BoxKernels& boxKernels();
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
@@ -20,8 +18,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_END
 #include "cells.simd.hpp"
 #include "rotated_samples.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -43,7 +40,6 @@ const BoxKernels& boxKernels()
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

@@ -6,12 +6,11 @@
 
 #include "../../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-/* Mappings f(x) of the four cell means of a quad to bits (paper, "Binary Bit Formulation"). V is a vector of integers
- or of doubles that hold integers, with least, greatest, fourTimes and quarter; put(bit, b) takes what a comparison of V
- gives. No value exceeds four times the largest x. */
+/* Mappings f(x) of the four cell means of a quad to bits (paper, "Binary Bit Formulation"). V is a vector of integers, or of
+ doubles that hold integers, with least, greatest, fourTimes and quarter; put(bit, b) takes the result of a comparison. No
+ value exceeds four times the largest x. */
 
 //! Equation (1): x_i > mean(x).
 struct MeanMapping
@@ -83,5 +82,4 @@ private:
     }
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

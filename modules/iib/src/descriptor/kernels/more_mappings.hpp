@@ -6,8 +6,7 @@
 
 #include "mappings.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 // Mappings that the paper does not have.
 
@@ -38,5 +37,4 @@ struct PairwiseMapping
     }
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,8 +6,7 @@
 
 #include "../../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 /* Orientation is an integer, so that sums and decisions are exact: ORIENTATION_STEPS a turn, about the
  range of |gx| of 8-bit images. */
@@ -20,5 +19,4 @@ static const float ATAN_A = 162.218109f;
 static const float ATAN_B = -47.0491257f;
 static const float ATAN_C = 12.9301834f;
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -10,14 +10,12 @@
 #include "../../common/bit_io.hpp"
 #include "opencv2/iib/detail/places.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 constexpr int MAX_GRANULARITY = 6;
 
-/** Sums over the cells of one level, n x n cells of GROUP_CHANNELS channels each. The cells in even columns of a
- row lie side by side, and those in odd columns: the left and right cells of the quads. T is ushort or unsigned, as
- the sums in integral images, or double where an unsigned is too small. */
+/** Sums over the n x n cells of a level, with GROUP_CHANNELS channels each. In a row, the cells of even columns come first,
+ then those of odd columns: the left and right cells of quads. T is ushort, unsigned or, for larger sums, double. */
 template <typename T> class CellGrid
 {
 public:
@@ -27,7 +25,7 @@ public:
     {
         n = cellsInRow;
         step = wholeLines<T>((size_t)n / 2 * GROUP_CHANNELS + CACHE_LINE / sizeof(T));
-        values.allocate(2 * (n + 1) * step);  // a row more, for the corners of cells
+        values.allocate(2 * (n + 1) * step);  // one row more, for the corners of cells
     }
 
     //! Cells (row, parity), (row, parity + 2), ... Kernels may read and write a vector past the end.
@@ -49,13 +47,13 @@ private:
     AlignedBuffer<T> values;
 };
 
-//! The edge of pixels nearest to a position, in [first, limit]: on positive numbers the cast is a floor.
+//! The pixel edge nearest to a position, in [first, limit]. The cast is a floor for positive numbers.
 static inline int edgeAt(double position, int first, int limit)
 {
     return (int)(std::min(std::max(position + 0.5, (double)first), (double)limit) - first) + first;
 }
 
-//! The n + 1 edges of n columns, and copies of the last one: kernels read up to 7 more columns of any level.
+//! Number of edges of n columns, padded with copies of the last one: kernels read up to 7 more columns of any level.
 constexpr int paddedEdges(int n) { return n + 1 + 7 * (n / 2); }
 
 //! The edges of the finest cells of a support region, in pixels or samples.
@@ -66,36 +64,36 @@ struct CellEdges
 };
 
 /** A quarter of the overlapping quads of a level: those whose top left cells are in rows dy, dy + 2, ... and columns
- dx, dx + 2, ... Their comparisons lie in memory row by row, and in a row plane by plane, of which there is one for
- each bit of the mapping; a plane has GROUP_CHANNELS bits for each quad, and is made of whole chunks. */
+ dx, dx + 2, ... Comparisons are stored row by row, and in a row plane by plane, one for each bit of the mapping. A plane has
+ GROUP_CHANNELS bits for each quad, padded to whole chunks. */
 struct QuadPhase
 {
     int dy, dx, rows, quads;
 
     static constexpr int COUNT = 4, CHUNK = 16;
 
-    //! @param i 0 to COUNT - 1, which of those on n x n cells; all but the first exist with overlap only.
+    //! @param n cells in a row. @param i number of the phase; without overlap there is only phase 0.
     QuadPhase(int n, int i) : dy(i / 2), dx(i % 2), rows((n - dy) / 2), quads((n - dx) / 2) {}
 
     int lanes() const { return quads * GROUP_CHANNELS; }
     int planeBytes() const { return (lanes() + CHUNK - 1) / CHUNK * (CHUNK / 8); }
 };
 
-//! The bits of a phase that are in use, all or some (paper, "Reduction of the IIB Descriptor Size"), in their order.
+//! The bits in use of a phase (paper, "Reduction of the IIB Descriptor Size"), in their order.
 class ChosenBits
 {
 public:
-    //! Some that lie in SIZE bytes of comparisons.
+    //! Up to SIZE bits within SIZE bytes of comparisons.
     struct Group
     {
         static constexpr int SIZE = 16;
-        size_t byte;         //!< the first of those bytes
-        int count;           //!< bits, up to SIZE
-        uchar places[SIZE];  //!< bytes of the bits, counted from the first; 128 if there is no bit
-        uchar masks[SIZE];   //!< the bits in their bytes; 1 if there is none
+        size_t byte;  //!< the first byte
+        int count;
+        uchar places[SIZE];  //!< byte of each bit, relative to the first; 128: no bit
+        uchar masks[SIZE];   //!< the bit in its byte; 1: no bit
     };
 
-    //! @param masks a bit for each comparison of the phase, where the comparison lies in memory.
+    //! @param masks a bit for each comparison of the phase, in the order of comparisons.
     explicit ChosenBits(const std::vector<uint64>& masks)
         : whole(std::count(masks.begin(), masks.end(), ~(uint64)0) == (ptrdiff_t)masks.size())
     {
@@ -123,7 +121,7 @@ public:
         return std::accumulate(chosen.begin(), chosen.end(), 0,
                 [](int bits, const Group& group) { return bits + group.count; });
     }
-    //! Whether all comparisons are: those in memory are then what the descriptor holds.
+    //! Whether all comparisons are in use: then the descriptor is a copy of them.
     bool all() const { return whole; }
     const std::vector<Group>& groups() const { return chosen; }
 
@@ -132,16 +130,16 @@ private:
     std::vector<Group> chosen;
 };
 
-//! What the parameters say about a level, for one group of channels.
+//! A level of a group of channels.
 struct LevelShape
 {
     int n;                           //!< cells in a row
     int step;                        //!< finest cells in a cell of this level, along an axis
-    int offset;                      //!< of its first bit in the descriptor
+    int offset;                      //!< first bit in the descriptor
     std::vector<ChosenBits> chosen;  //!< of each phase
 };
 
-//! The cells of a level along one axis: between every `step`-th of the finest cells' edges.
+//! The cells of a level along one axis: their edges are every `step`-th of the finest cells' edges.
 struct Axis
 {
     const int* edges;
@@ -153,9 +151,9 @@ struct Axis
     int length(int i) const { return edge(i + 1) - edge(i); }
 };
 
-/** Factors that make the sums of neighbouring cells along an axis comparable, 1 if they are equally
- long. With widths w0, w1 and heights h0, h1 of a quad's cells, the mean of cell (i, j) is sum / (w_j h_i), and
- sum * w_(1-j) * h_(1-i) is that but for a factor common to the four: decisions need no division. */
+/** Factors that make the sums of neighbouring cells along an axis comparable; 1 if they are equally long. With widths w0, w1
+ and heights h0, h1 of a quad's cells, the mean of cell (i, j) is sum / (w_j h_i). sum * w_(1-j) * h_(1-i) is proportional to
+ it, with the same factor for all four cells, so no division is needed. */
 struct Weights
 {
     int first, second;
@@ -168,5 +166,4 @@ struct Weights
     bool equal() const { return first == second; }
 };
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

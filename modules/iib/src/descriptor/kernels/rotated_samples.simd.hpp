@@ -6,14 +6,13 @@
 
 #include "rows.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-//! Products of values and a sampleFactor() of 16 bits each, since those of 32 bits are slow.
+//! Products with a sampleFactor(); 16-bit factors, since 32-bit products are slow.
 inline v_samples sampleFactor(short factor) { return v_setall_samples((int)(ushort)factor); }
 inline v_samples sampleFactor(int factor) { return v_setall_samples(factor); }
 inline v_samples multiplySamples(const v_samples& v, const v_samples& factor, short)
@@ -35,16 +34,16 @@ inline v_samples inside(const v_samples& place, const v_samples& last, bool refl
 template <typename T>
 void sampleIndices(const SampleGrid& grid, const RingRows<T>& rows, int oldest, int* index)
 {
-    const SampleGrid g = grid;  // a copy, which stores to int* surely do not change
+    const SampleGrid g = grid;  // a copy, since stores to int* may alias `grid`
     const int n = g.n, cells = g.cells(), lanes = VTraits<v_samples>::max_nlanes;
     const v_samples centreX = v_setall_samples(g.x), centreY = v_setall_samples(g.y);
     const v_samples right = v_setall_samples(g.image.width - 1),
                     bottom = v_setall_samples(g.image.height - 1);
     const v_samples left = v_setall_samples(rows.origin.x), shift = v_setall_samples(rows.shift(oldest)),
                     step = v_setall_samples((int)rows.step / GROUP_CHANNELS);
-    // place - count wraps to a large number if the place is in the ring already: the minimum of both is the place.
+    // min(place, place - count), unsigned: place - count wraps to a large number if place < count
     const auto count = v_reinterpret_as_u32(v_setall_samples(rows.count));
-    // along a row, in the order of the points: first by dx, then by the parity of the cell
+    // in the order of the points: by dx, then by the parity of the cell
     int alongX[MAX_SAMPLES_IN_ROW], alongY[MAX_SAMPLES_IN_ROW];
     for (int dx = 0, i = 0; dx < g.sub; dx++)
         for (int parity = 0; parity < 2; parity++)
@@ -176,5 +175,4 @@ template <typename T> RotatedSampleKernels<T> rotatedSampleKernels()
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

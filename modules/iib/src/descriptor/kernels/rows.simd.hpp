@@ -7,8 +7,7 @@
 #include "kernels.hpp"
 #include "vectors.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -20,12 +19,12 @@ inline v_int32 addModulo(const v_int32& a, const v_int32& b) { return a + b; }
 inline v_int16 setAll(short v) { return vx_setall_s16(v); }
 inline v_int32 setAll(int v) { return vx_setall_s32(v); }
 
-/* ORIENTATION_STEPS / 8 steps for equal sides, of 16-bit lanes or 32-bit ones that are 0 or greater. Other work finds
- room between the division and what follows it. */
+/* The orientation within an octant, atan(lo / hi), in steps. The division is in the constructor, so that other work may overlap
+ it. */
 class OctantSteps32
 {
 public:
-    //! @param lo, hi lo <= hi, hi > 0.
+    //! 0 <= lo <= hi, hi > 0.
     OctantSteps32(const v_int32& lo, const v_int32& hi) : t(exactQuotient(v_cvt_f32(lo), v_cvt_f32(hi))) {}
 
     v_int32 operator()() const
@@ -34,8 +33,7 @@ public:
         return nearestInt(((c() * t2 + b()) * t2 + a()) * t);
     }
 
-    //! The same for sides below 2^11. Products and sums are fused where the processor can: the one rounding less changes
-    //! the result for no two such sides.
+    //! The same for lo, hi < 2^11, with fused operations: for such values they do not change the result.
     v_int32 ofShortSides() const
     {
         const v_float32 t2 = t * t;
@@ -50,7 +48,7 @@ private:
     const v_float32 t;
 };
 
-//! Computes even and odd lanes apart, which takes no shuffle.
+//! Computes even and odd lanes separately, without shuffles.
 class OctantSteps16
 {
 public:
@@ -74,7 +72,7 @@ private:
 inline OctantSteps16 octantSteps(const v_int16& lo, const v_int16& hi) { return OctantSteps16(lo, hi); }
 inline OctantSteps32 octantSteps(const v_int32& lo, const v_int32& hi) { return OctantSteps32(lo, hi); }
 
-//! A gradient, its absolute values, and where it points.
+//! A gradient, its absolute values and its orientation.
 template <typename T, typename V> struct Gradient
 {
     V x, y, absoluteX, absoluteY;
@@ -96,7 +94,7 @@ template <typename T, typename V> struct Gradient
         return octantSteps(v_min(absoluteX, absoluteY), v_max(v_max(absoluteX, absoluteY), setAll((T)1)));
     }
 
-    //! atan2(-gy, gx), modulo ORIENTATION_STEPS, from the steps in its octant.
+    //! atan2(-gy, gx), modulo ORIENTATION_STEPS. @param s steps within its octant.
     V orientation(V s) const
     {
         const V zero = setAll((T)0);
@@ -107,14 +105,14 @@ template <typename T, typename V> struct Gradient
     }
 };
 
-//! Two vectors at once, so that their divisions overlap.
+//! Processes two vectors at a time, so that their divisions overlap.
 template <typename T>
 void imageChannelRows(
         const ImageRows<T>& in, T signedOffset, const ImageChannelRows<T>& out, ptrdiff_t above, int width)
 {
     typedef decltype(setAll(T())) V;
     constexpr int N = VTraits<V>::max_nlanes;
-    const ImageRows<T> rows = in;  // copies, which stores surely do not change
+    const ImageRows<T> rows = in;  // copies, since stores may alias the arguments
     T *const absoluteX = out.of[0], *const absoluteY = out.of[1], *const steps = out.of[2],
              *const pixels = out.of[3], *const signedX = out.of[4], *const signedY = out.of[5];
     const V offset = setAll(signedOffset);
@@ -148,7 +146,7 @@ void imageChannelRows(
     }
 }
 
-//! The last vector may overlap the one before: nothing past the last pixel is read.
+//! The last vector may overlap the one before, so that nothing past the last pixel is read.
 void widenRow(const uchar* in, short* out, int width)
 {
     constexpr int N = VTraits<v_int16>::max_nlanes;
@@ -168,21 +166,21 @@ template <typename Pixel, typename T> void widenRow(const Pixel* in, T* out, int
         out[x] = (T)in[x];
 }
 
-//! Adds to each value those before it in its group of four, modulo 2^16.
+//! Prefix sums within groups of four, modulo 2^16.
 inline v_uint16 prefixSumsOfFour(const v_uint16& v)
 {
-    // Added in 16 bits: valgrind takes a whole 64-bit sum for undefined where the last pixels of four are.
+    // 16-bit additions: for valgrind, a 64-bit sum is undefined if any of its pixels is
     const v_uint16 two = v_add_wrap(v, v_reinterpret_as_u16(v_reinterpret_as_u64(v) << 16));
     return v_add_wrap(two, v_reinterpret_as_u16(v_reinterpret_as_u64(two) << 32));
 }
 
-//! Running sums within each four pixels of a plane, from pixel x on.
+//! Prefix sums within each four pixels of a plane, from pixel x on.
 inline v_uint16 loadSums(const short* plane, int x)
 {
     return prefixSumsOfFour(v_reinterpret_as_u16(vx_load(plane + x)));
 }
 
-//! The same of four planes, interleaved.
+//! The same for four planes, interleaved.
 inline void interleave(const short* const planes[GROUP_CHANNELS], int x, v_uint16 pixels[4])
 {
     const v_uint16 sums[GROUP_CHANNELS] = {
@@ -209,8 +207,6 @@ void sumRow16(const short* const planes[GROUP_CHANNELS], int width, const ushort
     }
 }
 
-// Where 16 bits are too small for the sums over cells.
-
 void sumRow32(const short* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
 {
     const int step = VTraits<v_uint16>::max_nlanes, pixelsInVector = step / GROUP_CHANNELS / 2;
@@ -234,7 +230,7 @@ void sumRow32(const short* const planes[GROUP_CHANNELS], int width, const unsign
     }
 }
 
-//! Of 16-bit images, whose sums over four pixels exceed 16 bits. A pixel is one 128-bit vector here, on every machine.
+//! For 16-bit images. A pixel is one 128-bit vector, on every machine.
 void sumRowOf16Bit(const int* const planes[GROUP_CHANNELS], int width, const unsigned* above, unsigned* out)
 {
     v_uint32x4 sum = v_setzero_u32();
@@ -252,5 +248,4 @@ template <typename T> RowKernels<T> rowKernels() { return {imageChannelRows<T>, 
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -6,10 +6,9 @@
 
 #include "../../common/vectors.simd.hpp"
 
-// What the descriptor's kernels alone need beside the common vocabulary, raw intrinsics among it.
+// Vector operations of the descriptor's kernels alone, with raw intrinsics.
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -23,15 +22,15 @@ template <typename V> inline V subtractWhereLess(const V& a, const V& b, const V
     return v_select(a < b, whole - v, v);
 }
 
-#if CV_AVX512_SKX  // the above turns its masks into vectors and back
+#if CV_AVX512_SKX  // v_select would convert masks to vectors and back
 inline v_int16 subtractWhereLess(const v_int16& a, const v_int16& b, const v_int16& whole, const v_int16& v)
 {
     return v_int16(_mm512_mask_sub_epi16(v.val, _mm512_cmplt_epi16_mask(a.val, b.val), whole.val, v.val));
 }
 #endif
 
-/* Interleaves four planes; out[0] gets the first pixels. Zipping is cheap only within 128 bits, so that wider vectors
- are first permuted. */
+/* Interleaves four planes; out[0] gets the first pixels. Zipping is cheap only within 128 bits, so wider vectors are permuted
+ first. */
 inline void interleaveFour(const v_uint16 planes[4], v_uint16 out[4])
 {
 #if CV_AVX512_SKX
@@ -102,7 +101,7 @@ inline v_uint32 repeatLastFour(const v_uint32& v)
 #endif
 }
 
-//! The values that lie eight behind those of a vector. @param next the vector behind it.
+//! The values eight lanes further on. @param next the vector behind `values`.
 inline v_int16 eightBehind(const v_int16& values, const v_int16& next)
 {
 #if CV_AVX512_SKX
@@ -132,8 +131,8 @@ inline void storeAlternately(unsigned* even, unsigned* odd, int lane, const v_in
 #endif
 }
 
-/* Four numbers, each repeated four times, as 16 / v_int32 lanes vectors. Not by way of memory, where what was stored in
- parts could not be read whole until all stores before it are done. */
+/* Repeats each of four numbers four times, in 16 / (lanes of v_int32) vectors. Not through memory: a vector load would wait for
+ the stores of its parts. */
 inline void repeatEachFourTimes(const v_int32x4& n, v_int32 out[])
 {
 #if CV_AVX512_SKX
@@ -301,13 +300,13 @@ public:
     //! Whether each segment is summed whole.
     bool areComplete() const { return complete; }
 
-    //! The end of what is summed of segment i.
+    //! The end of the summed part of segment i.
     static int reached(const int* edges, int i)
     {
         return std::max(std::min(edges[i] + LONGEST, edges[0] + REACH), edges[i]);
     }
 
-    //! The sums, those of row + at[0] first, modulo 2^16.
+    //! The sums modulo 2^16, first those of row + at[0].
     v_uint16 operator()(const ushort* row, const size_t at[4]) const
     {
         const __m512i a = pick(0, row + at[0]), b = pick(1, row + at[1]), c = pick(2, row + at[2]),
@@ -321,7 +320,7 @@ public:
                 _mm512_mask_blend_epi64(0xcc, ab, cd), _mm512_shuffle_i64x2(rest, rest, 0xb1)));
     }
 
-    //! Stores those of segments 0, 2, 4, 6 to `even`, all rows' of one side by side, and the others to `odd`.
+    //! Stores the sums of segments 0, 2, 4, 6 to `even`, the others to `odd`, interleaved by rows.
     static void store(ushort* even, ushort* odd, const v_uint16& sums)
     {
         const __m512i bytes = _mm512_set_epi64(0x3f3e1f1e2f2e0f0e, 0x3b3a1b1a2b2a0b0a, 0x3736171627260706,
@@ -361,5 +360,4 @@ private:
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

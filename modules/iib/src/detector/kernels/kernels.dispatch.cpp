@@ -5,10 +5,8 @@
 #include "kernels.simd.hpp"
 #include "detector/kernels/kernels.simd_declarations.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 const DetectorKernels& detectorKernels() { CV_CPU_DISPATCH(detectorKernels, (), CV_CPU_DISPATCH_MODES_ALL); }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

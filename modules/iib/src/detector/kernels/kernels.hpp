@@ -8,8 +8,7 @@
 
 #include <cstring>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 constexpr int CONTRAST_BITS = 6;  //!< smoothed rows are normalized grey levels in 2^-6
 
@@ -19,16 +18,16 @@ struct SmoothingWeights
     short near, far;
 };
 
-//! Smooths the image before once more. Of the result a Hessian may be taken.
+//! One smoothing step, and the Hessian of its result.
 struct SmoothingStep
 {
     int spacing;  //!< of the filter's five taps, in pixels
     SmoothingWeights weights;
     int distance;  //!< of the Hessian's differences, in pixels; 0: no scale ends with this step
-    float factor;  //!< by which the determinant of these differences is the response, see HessianDetector
+    float factor;  //!< response / determinant of these differences, see HessianDetector
 };
 
-//! The upper half of a float's bits. Those of positive ones have their order, and all others are below them.
+//! The upper half of a float's bits, which keeps the order of positive floats and is lower for all others.
 inline short upperHalf(float value)
 {
     int bits;
@@ -36,30 +35,30 @@ inline short upperHalf(float value)
     return (short)(bits >> 16);
 }
 
-//! A row of responses, and what is made with it.
+//! Output of a row of responses.
 struct ResponseRows
 {
     float* values;
-    short* upper;                      //!< their upper halves, see upperHalf()
-    const short *before, *beforeThat;  //!< those of the two rows above
-    short* largest;                    //!< of these three, in each column
+    short* upper;                      //!< upperHalf() of the values
+    const short *before, *beforeThat;  //!< upperHalf() of the two rows above
+    short* largest;                    //!< maximum of these three rows in each column
 };
 
-/* What the detector does with rows. Pixels of 8 bits have no padding. Responses are floats in one order. */
+/* Kernels for rows. 8-bit pixels have no padding. */
 struct DetectorKernels
 {
     //! Normalized 8-bit pixels around 128 to -127..127 in 2^-6.
     void (*centre)(const uchar* pixels, short* out, int width);
-    /** out = c + near * (b + d - 2 c) + far * (a + e - 2 c) of rows a, b, c, d, e, `between`, and of that along the row.
-     The ends of both are repeated. */
+    /** out = c + near * (b + d - 2 c) + far * (a + e - 2 c) over rows a, b, c, d, e, then along the row `between`. The ends
+     of rows are repeated. */
     void (*smooth)(
             const short* const rows[5], const SmoothingStep& step, short* between, short* out, int width);
-    /** The determinant of the Hessian, factor * (Ixx Iyy - Ixy^2), by differences over `distance` pixels; rows: `distance`
-     above, at and below. Ixy is a quarter of a difference of four values, rounded. */
+    /** The determinant of the Hessian, factor * (Ixx Iyy - Ixy^2), by differences over `distance` pixels. Ixy is a quarter of
+     a difference of four values, rounded. @param rows `distance` above, the row itself, `distance` below. */
     void (*response)(
             const short* const rows[3], int distance, float factor, const ResponseRows& out, int width);
-    /** Columns from `begin` to before `end` where the upper half is at least `threshold`, which is positive, and at least what
-     three rows hold there and in the columns beside. Returns their number. */
+    /** Finds the columns of [begin, end) where the upper half is at least `threshold`, which is positive, and not below the
+     three rows of bounds in this column and its neighbours. Returns their number. */
     int (*maxima)(const short* upper, const short* const bounds[3], short threshold, int begin, int end,
             int* columns);
 };
@@ -67,5 +66,4 @@ struct DetectorKernels
 //! The kernels for this machine.
 const DetectorKernels& detectorKernels();
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

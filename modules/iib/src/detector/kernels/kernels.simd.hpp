@@ -4,20 +4,17 @@
 
 #include "kernels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 const DetectorKernels& detectorKernels();
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 #include "../../common/vectors.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -39,7 +36,7 @@ void centre(const uchar* pixels, short* out, int width)
 inline v_int16 plus(const v_int16& a, const v_int16& b) { return v_add_wrap(a, b); }
 inline v_int16 minus(const v_int16& a, const v_int16& b) { return v_sub_wrap(a, b); }
 
-//! Repeats the ends of a row, at least so many times.
+//! Repeats the ends of a row, at least this many times.
 void repeatEnds(short* row, int width, int times)
 {
     const v_int16 first = vx_setall_s16(row[0]), last = vx_setall_s16(row[width - 1]);
@@ -111,7 +108,7 @@ template <int N> inline v_int16 lanesFrom(const v_int16& first, const v_int16& s
 int maxima(
         const short* values, const short* const largest[3], short threshold, int begin, int end, int* columns)
 {
-    const int TOGETHER = 32;  // columns, so that few branches depend on what is found
+    const int TOGETHER = 32;  // columns per branch
     const short *const smaller = largest[0], *const same = largest[1], *const larger = largest[2];
     const auto ofColumn = [&](int x) {
         return v_max(v_max(vx_load(smaller + x), vx_load(same + x)), vx_load(larger + x));
@@ -151,7 +148,6 @@ const DetectorKernels& detectorKernels()
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

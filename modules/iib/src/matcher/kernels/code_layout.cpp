@@ -7,8 +7,7 @@
 
 #include <cstring>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 static const int WORD = 4, SAMPLE = 4;  // one word in SAMPLE
 
@@ -35,7 +34,7 @@ CodeLayout::CodeLayout(const std::vector<int>& levelSizes, CodePacking packing_)
         bitsBefore.push_back(bitsBefore.back() + 8 * place.bytes);
 }
 
-// Inlined: it runs for each word of each code.
+// hot: inlined for each word of each code
 inline unsigned CodeLayout::word(int i, const uchar* descriptor) const
 {
     const Place place = places[i];
@@ -61,7 +60,7 @@ void CodeLayout::restore(const unsigned* plain, uchar* descriptor) const
             descriptor[places[i].from + b] = ((const uchar*)(plain + i))[b];
 }
 
-// PACKING_ADDERS of a code whose word i is word(i), to words that lie `step` apart.
+// Packs the words word(0), word(1), ... by PACKING_ADDERS, to words that lie `step` apart.
 template <class Word> static void combine(int words, const Word& word, unsigned* packed, int step)
 {
     unsigned parity = packed[0] = word(0);
@@ -93,7 +92,7 @@ void CodeLayout::store(const uchar* descriptor, unsigned* block, int lane) const
     }
 }
 
-// First the plain words, code by code; then loops over the lanes, which compilers make vectors of.
+// First the plain words, code by code; then loops over lanes, which compilers vectorize.
 void CodeLayout::storeBlock(const uchar* descriptors, size_t step, unsigned* block) const
 {
     for (int lane = 0; lane < CODES_PER_BLOCK; lane++)
@@ -148,5 +147,4 @@ void CodeLayout::fetch(const unsigned* block, int lane, unsigned* plain) const
     }
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -5,10 +5,8 @@
 #include "hamming.simd.hpp"
 #include "matcher/kernels/hamming.simd_declarations.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 const HammingKernels& hammingKernels() { CV_CPU_DISPATCH(hammingKernels, (), CV_CPU_DISPATCH_MODES_ALL); }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

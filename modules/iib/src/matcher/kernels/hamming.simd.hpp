@@ -4,27 +4,23 @@
 
 #include "hamming.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 const HammingKernels& hammingKernels();
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 #include "scan_pruned.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 namespace {
 
-/** The COUNT nearest of each query and, if wanted, the nearest of each train code. A pair's key is its distance, followed
-by an index in the low bits: the least key is that of the nearest pair, and of the first one if there are several. So no
-tile needs a branch on what it found. */
+/** The COUNT nearest of each query and, if needed, the nearest of each train code. A pair's key is its distance, followed by
+an index in the low bits: the least key is that of the nearest pair, ties to the first. So no result needs a branch. */
 template <int COUNT> class NearestScanner : public Scanner
 {
 public:
@@ -34,17 +30,17 @@ public:
         std::fill(trainKeys.data(), trainKeys.data() + trains, int(NO_KEY));
     }
 
-    //! Some queries against all blocks.
+    //! Compares Q queries with all blocks.
     template <int Q> void row(int query)
     {
         setQueries<Q>(query);
-        Counts nearest[COUNT][Tile<Q>::SIZE];
-        for (int i = 0; i < COUNT * Tile<Q>::SIZE; i++)
-            nearest[i / Tile<Q>::SIZE][i % Tile<Q>::SIZE] = vx_setall_s32(NO_KEY);
+        Counts nearest[COUNT][BlockDistances<Q>::SIZE];
+        for (int i = 0; i < COUNT * BlockDistances<Q>::SIZE; i++)
+            nearest[i / BlockDistances<Q>::SIZE][i % BlockDistances<Q>::SIZE] = vx_setall_s32(NO_KEY);
         for (int block = 0; block < blocks; block++)
             compare<Q>(query, block, nearest);
         for (int n = 0; n < COUNT; n++)
-            for (int i = 0; i < Tile<Q>::SIZE; i++)
+            for (int i = 0; i < BlockDistances<Q>::SIZE; i++)
                 keepOfQuery(query + i / VECTORS, i % VECTORS * WIDTH, nearest[n][i]);
     }
 
@@ -60,19 +56,19 @@ private:
     static constexpr int BITS = NearestScan::SMALL_INDEX_BITS, INDEX_MASK = (1 << BITS) - 1, NO_KEY = INT_MAX;
 
     template <int Q>
-    CV_ALWAYS_INLINE void compare(int query, int block, Counts (&nearest)[COUNT][Tile<Q>::SIZE])
+    CV_ALWAYS_INLINE void compare(int query, int block, Counts (&nearest)[COUNT][BlockDistances<Q>::SIZE])
     {
-        Tile<Q> tile;
-        Counts keys[Tile<Q>::SIZE];
+        BlockDistances<Q> tile;
+        Counts keys[BlockDistances<Q>::SIZE];
         tile.start(queries, codes(block), layout.words());
         tile.distances(keys);
-        for (int i = 0; i < Tile<Q>::SIZE; i++)
+        for (int i = 0; i < BlockDistances<Q>::SIZE; i++)
             keys[i] = keys[i] << BITS;
         if (incomplete(block))
-            for (int i = 0; i < Tile<Q>::SIZE; i++)
+            for (int i = 0; i < BlockDistances<Q>::SIZE; i++)
                 keys[i] = v_select(missing(query + i / VECTORS, block, i % VECTORS) < vx_setzero_s32(),
                         vx_setall_s32(NO_KEY), keys[i]);
-        for (int i = 0; i < Tile<Q>::SIZE; i++)
+        for (int i = 0; i < BlockDistances<Q>::SIZE; i++)
         {
             const Counts key = keys[i] | vx_setall_s32(block);
             if (COUNT > 1)
@@ -98,7 +94,7 @@ private:
                     scan.firstTrain + (all[lane] & INDEX_MASK) * CODES_PER_BLOCK + firstLane + lane);
     }
 
-    //! Puts a pair among the `count` nearest ones.
+    //! Inserts a pair into the `count` nearest ones.
     static void keep(MatchKey* nearest, int count, int key, size_t index)
     {
         MatchKey n = key == NO_KEY ? NO_MATCH : matchKey(key >> BITS, index);
@@ -115,7 +111,7 @@ private:
     AlignedBuffer<int> trainKeys;
 };
 
-//! In rows of Q queries, what is left in smaller ones.
+//! Processes Q queries at a time, then the remainder in smaller groups.
 template <int Q, class S> void scanAll(S&& scanner, int queryCount)
 {
     int q = 0;
@@ -147,7 +143,6 @@ const HammingKernels& hammingKernels()
 }
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

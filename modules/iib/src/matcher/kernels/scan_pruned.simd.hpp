@@ -7,14 +7,13 @@
 #include "../../common/aligned_buffer.hpp"
 #include "scanner.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
-const int NEVER = INT_MAX;  // the distance of pairs that ended
+const int NEVER = INT_MAX;  // the distance of dropped pairs
 
-//! Writes the values of some lanes, and may write CODES_PER_BLOCK values whatever their number.
+//! Writes the values of some lanes side by side; may write up to CODES_PER_BLOCK values.
 CV_ALWAYS_INLINE void storeLanes(int* to, const Counts* values, int lanes)
 {
 #if IIB_COMPRESSES_LANES
@@ -54,7 +53,7 @@ public:
         for (int q = 0; q < Q; q++)
             end[q] = list(q);
         for (int block = 0; block < blocks; block++)
-            for (int q = 0; q < Q; q++)  // several at a time, whose steps overlap
+            for (int q = 0; q < Q; q++)  // interleaved, so that the queries' steps overlap
             {
                 Counts trains[VECTORS], slack[VECTORS];
                 for (int v = 0; v < VECTORS; v++)
@@ -71,7 +70,7 @@ public:
     }
 
     int* distances(int q) { return values.data() + q * rowSize; }
-    //! storeLanes() writes beyond the end: there is room for a CodeBlock more.
+    //! With room for a CodeBlock more, since storeLanes() writes beyond the end.
     int* list(int q) { return lists.data() + q * listSize; }
 
 private:
@@ -80,11 +79,11 @@ private:
     AlignedBuffer<int> values, lists;
 };
 
-//! The plain words of train codes, each unpacked when it is asked for.
+//! The plain words of train codes, unpacked on first use.
 class PlainCodes
 {
 public:
-    //! @param count how many there may be to unpack: all or none.
+    //! @param count number of train codes, or 0 if none is needed.
     PlainCodes(const CodePairs& p, int count)
         : pairs(p), known(count), words((size_t)count * p.layout.words())
     {
@@ -108,7 +107,7 @@ private:
     AlignedBuffer<unsigned> words;
 };
 
-//! Of two arrays of words.
+//! Hamming distance of two arrays of words.
 inline int countDifferences(const unsigned* a, const unsigned* b, int words)
 {
     int count = words % 2 ? countBits(a[words - 1] ^ b[words - 1]) : 0;
@@ -122,7 +121,7 @@ inline int countDifferences(const unsigned* a, const unsigned* b, int words)
     return count;
 }
 
-//! Gives pairs up at the stages of a scan, and hands those that are near enough to its sink.
+//! Drops pairs at the stages of a scan, and reports those below the sink's thresholds.
 class PrunedScanner : public Scanner
 {
 public:
@@ -135,12 +134,12 @@ public:
         words[stageCount] = layout.words();
     }
 
-    //! Some queries against all blocks: all pairs together up to a stage; then those that pass one by one, or all
-    //! to the next stage if they are many.
+    //! Compares Q queries with all blocks: all pairs up to a stage; then the pairs that pass one by one, or, if they are
+    //! many, all pairs to the next stage.
     template <int Q> void row(int query)
     {
         setQueries<Q>(query);
-        // Two stages in one go if the second comes soon after the first, where hardly any tile would end.
+        // two stages in one pass if the second follows closely
         int stage = stageCount > 1 && words[1] - words[0] <= 4 ? 1 : 0;
         stage == 1 ? compareTo<Q, 1>(query, 1, 0) : compareTo<Q, ANY>(query, 0, -1);
         for (; stage < stageCount; compareTo<Q, ANY>(query, ++stage, -1))
@@ -164,7 +163,7 @@ public:
     }
 
 private:
-    //! Hands on the pairs of a block that are near enough.
+    //! Reports the pairs of a block that are below a threshold.
     void collect(int query, int q, int block)
     {
         Counts distances[VECTORS], slack[VECTORS];
@@ -184,8 +183,8 @@ private:
             scan.sink.found(query, block * CODES_PER_BLOCK + trailingZeros32(lanes), near[i++]);
     }
 
-    //! Writes the distances up to a stage, or to the end; NEVER for pairs that ended on the way or there. Adds up the
-    //! pairs that go on at stage `counted`, before this one, unless it is negative. STAGE is the stage, or ANY.
+    //! Stores the distances up to a stage, or to the end; NEVER for dropped pairs. Counts the pairs that pass stage
+    //! `counted`, an earlier one, unless it is negative. STAGE is the stage, or ANY.
     template <int Q, int STAGE> void compareTo(int query, int anyStage, int counted)
     {
         const int stage = STAGE == ANY ? anyStage : STAGE;
@@ -194,9 +193,10 @@ private:
             minima[q] = vx_setall_s32(NEVER);
         for (int block = 0; block < blocks; block++)
         {
-            Tile<Q> tile;
-            Counts distance[Tile<Q>::SIZE], before[Tile<Q>::SIZE], slack[Tile<Q>::SIZE];
-            for (int i = 0; i < Tile<Q>::SIZE; i++)
+            BlockDistances<Q> tile;
+            Counts distance[BlockDistances<Q>::SIZE], before[BlockDistances<Q>::SIZE],
+                    slack[BlockDistances<Q>::SIZE];
+            for (int i = 0; i < BlockDistances<Q>::SIZE; i++)
             {
                 before[i] = vx_setzero_s32();
                 slack[i] = missing(query + i / VECTORS, block, i % VECTORS);
@@ -206,14 +206,14 @@ private:
             for (int i = 0; i < stage; i++)
             {
                 endPairs<Q>(i, scan.limits ? scan.limits + query : 0, distance, before, slack);
-                for (int j = 0; j < Tile<Q>::SIZE && i == counted; j++)
+                for (int j = 0; j < BlockDistances<Q>::SIZE && i == counted; j++)
                     gone += slack[j] >> 31;
                 tile.advance(queries, codes(block), words[i], words[i + 1]);
                 tile.distances(distance);
             }
             if (stage > 0 && stage < stageCount)
                 endPairs<Q>(stage, 0, distance, before, slack);
-            for (int i = 0; i < Tile<Q>::SIZE; i++)
+            for (int i = 0; i < BlockDistances<Q>::SIZE; i++)
             {
                 Counts left = distance[i];
                 if (stage > 0 || incomplete(block))
@@ -228,13 +228,13 @@ private:
             least[q] = v_reduce_min(minima[q]);
     }
 
-    //! Makes the slack of the pairs negative that are not to go on at a stage.
+    //! Makes the slack of pairs that a stage drops negative.
     template <int Q>
     CV_ALWAYS_INLINE void endPairs(
             int stage, const int* limits, const Counts* distance, Counts* before, Counts* slack) const
     {
         const Counts most = vx_setall_s32(policy.stages[stage].most);
-        for (int i = 0; i < Tile<Q>::SIZE; i++)
+        for (int i = 0; i < BlockDistances<Q>::SIZE; i++)
         {
             slack[i] = slack[i] | (before[i] + most - distance[i]);
             if (limits)
@@ -243,7 +243,7 @@ private:
         }
     }
 
-    //! The most that may differ at the stage. compareTo() has looked at all but the first.
+    //! The largest partial distance that passes the stage. compareTo() has checked all stages but the first.
     int lowerLimit(int query, int q, int stage)
     {
         const int most = stage == 0 ? policy.stages[0].most : NEVER - 1;
@@ -255,7 +255,7 @@ private:
         return std::min(limit, most);
     }
 
-    //! Takes the pairs of a list one by one through the stages that follow.
+    //! Compares the pairs of a list one by one through the remaining stages.
     void finish(int query, int q, int count, int stage)
     {
         for (; stage < stageCount && count > 0; stage++)
@@ -274,7 +274,7 @@ private:
                 sink.found(query, list[i], distance[list[i]]);
     }
 
-    //! Compares the pairs of a list to the stage after a stage; returns how many are left.
+    //! Compares the pairs of a list from a stage to the next; returns the number left.
     int advance(int q, int count, int stage)
     {
         const int most = stage + 1 < stageCount ? policy.stages[stage + 1].most : NEVER;
@@ -298,11 +298,10 @@ private:
     const int stageCount;
     Shortlists lists;
     PlainCodes trains;
-    AutoBuffer<int> words;      // up to each stage, and in all
-    int least[LISTED_QUERIES];  // of the distances that compareTo() has left
+    AutoBuffer<int> words;      //!< up to each stage, then the total
+    int least[LISTED_QUERIES];  //!< smallest distance of each query in compareTo()
 };
 
 }  // namespace
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

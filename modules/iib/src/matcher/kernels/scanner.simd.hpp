@@ -2,15 +2,14 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// What all scans share: the queries of a row of tiles, and which pairs exist.
+// Base of all scans: prepares some queries, and says which pairs exist.
 
 #pragma once
 
 #include "hamming.hpp"
-#include "tiles.simd.hpp"
+#include "block_distances.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
@@ -29,10 +28,10 @@ protected:
             layout.arrange(pairs.queries.ptr(query + q), plain.data() + q * layout.words());
         queries.set<Q>(plain.data());
     }
-    //! The plain words of one of the queries that were set.
+    //! The plain words of query q of setQueries().
     const unsigned* plainQuery(int q) const { return plain.data() + q * layout.words(); }
 
-    //! Whether missing() has to be asked.
+    //! Whether missing() may be negative.
     bool incomplete(int block) const { return pairs.allowed || block == blocks - 1; }
     //! Negative in the lanes whose pairs do not exist or are masked.
     CV_ALWAYS_INLINE Counts missing(int query, int block, int v) const
@@ -54,7 +53,7 @@ protected:
 
     const CodePairs& pairs;
     const CodeLayout& layout;
-    TileQueries queries;
+    QueryGroup queries;
     const int blocks;
 
 private:
@@ -63,5 +62,4 @@ private:
 
 }  // namespace
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

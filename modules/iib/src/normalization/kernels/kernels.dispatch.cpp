@@ -5,13 +5,11 @@
 #include "kernels.simd.hpp"
 #include "normalization/kernels/kernels.simd_declarations.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 const NormalizationKernels& normalizationKernels()
 {
     CV_CPU_DISPATCH(normalizationKernels, (), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

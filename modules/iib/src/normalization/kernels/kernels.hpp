@@ -6,22 +6,20 @@
 
 #include "../../common/aligned_buffer.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-//! What is normalized, pixels, means and differences, are grey levels of 0..255 in 2^-7.
+//! Pixels, means and differences are grey levels of 0..255 in 2^-7.
 constexpr int GREY_BITS = 7;
 constexpr int WHITE = 255 << GREY_BITS;
 
-/* What local normalization does with rows. Pixels of 8 bits have no padding. A `half` row has half as many values as
- those it comes from or goes to. All is on integers but gain, floats in one order of operations, whose square root and
- quotient IEEE 754 rounds in one way. */
+/* Kernels for rows. 8-bit pixels have no padding. A `half` row has half as many values as the other rows. All but gain work on
+ integers; gain uses floats in one order of operations, with exact square roots and quotients. */
 struct NormalizationKernels
 {
     //! Grey levels from 8-bit pixels.
     void (*widen)(const uchar* pixels, short* out, int width);
-    /** Means of 4 x 4 values with the weights 1, 3, 3, 1 in both directions, rounded: nothing is left that could alias.
-     Value x lies between values 2 x and 2 x + 1; rows[i][-1] to rows[i][2 * halfWidth] are read. */
+    /** Rounded means of 4 x 4 values with the weights 1, 3, 3, 1 in both directions. Value x lies between values 2 x and
+     2 x + 1; rows[i][-1] to rows[i][2 * halfWidth] are read. */
     void (*halveShorts)(const short* const rows[4], short* half, int halfWidth);
     void (*halveInts)(const int* const rows[4], int* half, int halfWidth);
     //! A quarter of the way from one row to another.
@@ -31,7 +29,7 @@ struct NormalizationKernels
     //! out = centre + weight / 256 * (before + after - 2 * centre), rounded.
     void (*blur)(const int* before, const int* centre, const int* after, int weight, int* out, int width);
     void (*subtract)(const short* pixels, const short* means, short* out, int width);
-    //! The same means of the squares of differences, in 2^-6 squared grey levels.
+    //! The same means of squared differences, in 2^-6 squared grey levels.
     void (*halveSquares)(const short* const rows[4], int* half, int halfWidth);
     //! 1024 * 40 / (standard deviation + 2).
     void (*gain)(const int* variance, short* out, int width);
@@ -42,5 +40,4 @@ struct NormalizationKernels
 //! The kernels for this machine.
 const NormalizationKernels& normalizationKernels();
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -4,20 +4,17 @@
 
 #include "kernels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 const NormalizationKernels& normalizationKernels();
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 #include "../../common/vectors.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -171,7 +168,6 @@ const NormalizationKernels& normalizationKernels()
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

@@ -5,13 +5,11 @@
 #include "kernels.simd.hpp"
 #include "refinement/kernels/kernels.simd_declarations.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 const RefinementKernels& refinementKernels()
 {
     CV_CPU_DISPATCH(refinementKernels, (), CV_CPU_DISPATCH_MODES_ALL);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

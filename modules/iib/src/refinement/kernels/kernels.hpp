@@ -6,26 +6,23 @@
 
 #include "../../precomp.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
-/* A patch is PATCH x PATCH samples, 2 units apart: images are smoothed so that nothing is lost between them. All is
- exact on integers. */
+/* A patch is PATCH x PATCH samples, 2 units apart, of a smoothed image. All sums are exact integers. */
 constexpr int PATCH = 16, PATCH_SAMPLES = PATCH * PATCH;
-constexpr int TEMPLATE = 2 * PATCH + 1;  //!< pixels in rows and columns: samples and their neighbours
-constexpr int WINDOW_BITS = 6, WINDOW = 1 << WINDOW_BITS;  //!< most pixels in rows and columns around a point
-constexpr int WINDOW_STEP = 2 * WINDOW;                    //!< from a row of a window to the next, in pixels
+constexpr int TEMPLATE = 2 * PATCH + 1;  //!< side of the pixels that a patch is sampled from
+constexpr int WINDOW_BITS = 6, WINDOW = 1 << WINDOW_BITS;  //!< largest side of the pixels around a point
+constexpr int WINDOW_STEP = 2 * WINDOW;                    //!< pixels from a row of a window to the next
 constexpr int IMAGE_BORDER = WINDOW / 2 + 1;               //!< pixels that windows reach beyond an image
-constexpr int POSITION_BITS = 16;                          //!< positions in a window are pixels in 2^-16
-constexpr int SAMPLE_BITS = 5;   //!< samples are normalized grey levels of -128..127 in 2^-5
-constexpr int WEIGHT_BITS = 11;  //!< of the sum of samples
-constexpr int GAIN_BITS = 8;     //!< gains are below 256, samples 2^12: products fit 32 bits
+constexpr int POSITION_BITS = 16;                          //!< unit of positions: 2^-16 pixels
+constexpr int SAMPLE_BITS = 5;                             //!< unit of samples: 2^-5 grey levels, -128..127
+constexpr int WEIGHT_BITS = 11;                            //!< of the sum of samples
+constexpr int GAIN_BITS = 8;  //!< gains are below 256, samples below 2^12: products fit 32 bits
 
-//! Derivatives of samples by the six parameters: x, y, and the four of a linear warp, d/dx and d/dy times places x and
-//! y.
+//! x, y, and four of a linear warp: derivatives by x and y, each times the sample's x and y.
 constexpr int PARAMETERS = 6;
 
-//! What is summed over samples, each times a weight: its own, itself, the template's, and that of each derivative.
+//! Weighted sums over samples: of the samples, their squares, and their products with the template and its derivatives.
 enum
 {
     SUM_SAMPLES,
@@ -35,13 +32,13 @@ enum
     SUMS = SUM_DERIVATIVES + PARAMETERS
 };
 
-//! Where the samples of a patch are in a window: the first, and what a column and a row add.
+//! Positions of a patch's samples in a window: that of the first one, and the steps to the next column and row.
 struct PatchGrid
 {
     Point first, column, row;
 };
 
-//! A Gaussian around the centre, at most 1, itself and times x and y; and x and y, in 16 units. All in 2^-15.
+//! A Gaussian around the centre, its products with x and y, and x and y in 16 units. All are fractions of 2^15.
 struct PatchWeights
 {
     short gaussian[PATCH_SAMPLES], gaussianX[PATCH_SAMPLES], gaussianY[PATCH_SAMPLES];
@@ -51,28 +48,28 @@ struct PatchWeights
 struct PatchTemplate
 {
     short samples[PATCH_SAMPLES];
-    short derivatives[PARAMETERS][PATCH_SAMPLES];       //!< those by the linear warp are halved
-    short weights[SUMS - SUM_TEMPLATE][PATCH_SAMPLES];  //!< of SUM_TEMPLATE and after, halved
+    short derivatives[PARAMETERS][PATCH_SAMPLES];       //!< the four of the linear warp are halved
+    short weights[SUMS - SUM_TEMPLATE][PATCH_SAMPLES];  //!< half the weights of SUM_TEMPLATE and after
 };
 
-/* Sums of products of values with themselves, with their right neighbours, and with those below. Neighbours of the last
- row are left out, and the few that are at both ends of two rows count little, as the values have a patch's weights. */
+/* Sums of products of values with themselves, with their right neighbours, and with the values below, without the last
+ row. Pairs from the end of a row to the begin of the next are included: weights are small there. */
 struct Autocorrelation
 {
     int squares, right, below;
 };
 
-//! A coarse look takes LOOK x LOOK pixels of the first image, so many pixels apart.
-constexpr int LOOK = 8, LOOK_APART = 4;
+//! The coarse comparison takes COARSE_PIXELS x COARSE_PIXELS pixels of each image, COARSE_STEP pixels apart in the first.
+constexpr int COARSE_PIXELS = 8, COARSE_STEP = 4;
 
-//! Of a look's pixels less 128, each times a weight, which add up to WEIGHTS.
-struct LookSums
+//! Weighted sums over pixels less 128; the weights add up to WEIGHTS.
+struct CoarseSums
 {
     static constexpr int WEIGHTS = 400;
     int first, second, firstSquares, secondSquares, products;
 };
 
-//! Of differences of neighbouring pixels, and of these differences' differences.
+//! Sums over squared first and second differences of neighbouring pixels.
 struct SquaredDifferences
 {
     int first, second;
@@ -80,28 +77,28 @@ struct SquaredDifferences
 
 struct RefinementKernels
 {
-    //! (1 2 1) / 4 in both directions; the ends of rows are repeated. `sums` has room for 2 more than `width`.
+    //! (1 2 1) / 4 in both directions; rows are continued by their last pixels. `sums` holds width + 2 values.
     void (*smooth)(const uchar* const rows[3], ushort* sums, uchar* out, int width);
-    /** Writes of each pixel of `size`, and of a column more, two bytes: its own value and that of the pixel below, each
-     less 128. So two neighbours are the four pixels around a sample. Reads a row more than `size` has, and
+    /** Writes two bytes for each pixel of `size` and of one column more: its value and that of the pixel below, each
+     less 128. Two neighbours then hold the four pixels around a sample. Reads one row more than `size` has, and
      WINDOW + 1 pixels of each row. */
     void (*readWindow)(const uchar* pixels, size_t step, Size size, ushort* window);
-    //! Samples of a window, bilinear; all must be inside.
+    //! Bilinear samples of a window; all must be inside.
     void (*sample)(const ushort* window, const PatchGrid& grid, short* samples);
-    /** A coarse look. Reads three bytes more behind each pixel.
-    @param rows of the second image: where the first pixel of each is, and what a column adds, in 2^-POSITION_BITS */
-    LookSums (*look)(const uchar* pixels1, size_t step1, const uchar* pixels2, size_t step2,
-            const Point (&rows)[LOOK], const Point& column);
-    //! Of every fourth row of TEMPLATE x TEMPLATE pixels. @param next from a pixel to its neighbour.
+    /** Sums of the coarse comparison. Reads three bytes beyond each pixel.
+    @param rows positions of the first pixel of each row in the second image
+    @param column step to the next pixel of a row; positions and step in 2^-POSITION_BITS pixels */
+    CoarseSums (*coarseSums)(const uchar* pixels1, size_t step1, const uchar* pixels2, size_t step2,
+            const Point (&rows)[COARSE_PIXELS], const Point& column);
+    //! Over every fourth row of TEMPLATE x TEMPLATE pixels. @param next offset of a pixel's neighbour.
     SquaredDifferences (*squareDifferences)(const uchar* pixels, size_t step, ptrdiff_t next);
-    //! Samples of TEMPLATE x TEMPLATE pixels, their derivatives, and these times weights.
+    //! Samples TEMPLATE x TEMPLATE pixels.
     void (*makeTemplate)(const uchar* pixels, size_t step, const PatchWeights& weights, PatchTemplate& out);
-    //! The sums of samples.
+    //! All SUMS of the samples.
     void (*sum)(const short* samples, const PatchWeights& weights, const PatchTemplate& patch, int* sums);
-    //! The sums of weighted derivatives times derivatives, j <= i, in rows.
+    //! sums[i][j], j <= i: weighted derivative i times derivative j.
     void (*sumProducts)(const PatchTemplate& patch, int (*sums)[PARAMETERS]);
-    //! What gain (in 2^-GAIN_BITS) times the template plus offset (so, too) leaves of samples, times half their
-    //! weights.
+    //! (samples - gain * template - offset) times half the weights; gain and offset in 2^-GAIN_BITS.
     void (*subtract)(const short* samples, const PatchWeights& weights, const PatchTemplate& patch, int gain,
             int offset, short* residuals);
     Autocorrelation (*autocorrelate)(const short* values);
@@ -110,5 +107,4 @@ struct RefinementKernels
 //! The kernels for this machine.
 const RefinementKernels& refinementKernels();
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

@@ -4,20 +4,17 @@
 
 #include "kernels.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 const RefinementKernels& refinementKernels();
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #ifndef CV_CPU_OPTIMIZATION_DECLARATIONS_ONLY
 
 #include "../../common/vectors.simd.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
@@ -65,10 +62,10 @@ inline v_int32 samplesAt(const ushort* window, const v_int32& x, const v_int32& 
 {
     const v_int32 rows = (y >> (POSITION_BITS - WINDOW_BITS - 1)) & vx_setall_s32(-WINDOW_STEP);
     const v_int32 places = rows + (x >> POSITION_BITS);
-    // two columns, each a pixel and the one below; what is left of positions below whole pixels, in 2^-8
+    // two columns, each a pixel and the one below; then the fractions of the position, in 2^-8 pixels
     const v_int16 four = v_reinterpret_as_s16(gatherWords<sizeof(*window)>(window, places));
     const v_int32 right = x & vx_setall_s32(0xff00), down = y & vx_setall_s32(0xff00);
-    // 256 times the upper pixels, and so many times what the lower ones are more, modulo 2^16, which the sum fits
+    // 256 * upper + down * (lower - upper), modulo 2^16: the result fits
     const v_int16 upper = four << 8, difference = v_sub_wrap(four >> 8, upper >> 8);
     const v_int16 columns =
             v_add_wrap(upper, v_mul_wrap(difference, v_reinterpret_as_s16((down << 8) | (down >> 8))));
@@ -104,21 +101,21 @@ void sample(const ushort* window, const PatchGrid& grid, short* samples)
         }
 }
 
-LookSums look(const uchar* pixels1, size_t step1, const uchar* pixels2, size_t step2,
-        const Point (&rows)[LOOK], const Point& column)
+CoarseSums coarseSums(const uchar* pixels1, size_t step1, const uchar* pixels2, size_t step2,
+        const Point (&rows)[COARSE_PIXELS], const Point& column)
 {
-    static const int WEIGHTS[LOOK] = {1, 2, 3, 4, 4, 3, 2, 1};  // about a Gaussian of 8 pixels
-    static const int COLUMNS[LOOK] = {0, 1, 2, 3, 4, 5, 6, 7};
+    static const int WEIGHTS[COARSE_PIXELS] = {1, 2, 3, 4, 4, 3, 2, 1};  // about a Gaussian of 8 pixels
+    static const int COLUMNS[COARSE_PIXELS] = {0, 1, 2, 3, 4, 5, 6, 7};
     const v_samples byte = v_setall_samples(255), middle = v_setall_samples(128);
-    const auto product = [](const v_samples& a, const v_samples& b) {  // of 16 bits, where b is not negative
+    const auto product = [](const v_samples& a, const v_samples& b) {  // of 16-bit values; b >= 0
         return v_dotprod(v_reinterpret_as_s16(a), v_reinterpret_as_s16(b));
     };
     const auto positive = [](const v_samples& v) { return v & v_setall_samples(0xffff); };
     v_samples sums[5];
     for (v_samples& sum : sums)
         sum = v_setall_samples(0);
-    for (int y = 0; y < LOOK; y++, pixels1 += LOOK_APART * step1)
-        for (int x = 0; x < LOOK; x += VTraits<v_samples>::max_nlanes)
+    for (int y = 0; y < COARSE_PIXELS; y++, pixels1 += COARSE_STEP * step1)
+        for (int x = 0; x < COARSE_PIXELS; x += VTraits<v_samples>::max_nlanes)
         {
             const v_samples columns = v_load_samples(COLUMNS + x);
             const v_samples weights = v_load_samples(WEIGHTS + x) * v_setall_samples(WEIGHTS[y]);
@@ -127,7 +124,7 @@ LookSums look(const uchar* pixels1, size_t step1, const uchar* pixels2, size_t s
             };
             const v_samples offsets =
                     place(rows[y].y, column.y) * v_setall_samples((int)step2) + place(rows[y].x, column.x);
-            const v_samples first = (v_load_words(pixels1 + LOOK_APART * x) & byte) - middle;
+            const v_samples first = (v_load_words(pixels1 + COARSE_STEP * x) & byte) - middle;
             const v_samples second = (gatherWords<1>(pixels2, offsets) & byte) - middle;
             const v_samples weighted1 = product(first, weights), weighted2 = product(second, weights);
             sums[0] += weighted1;
@@ -148,8 +145,8 @@ SquaredDifferences squareDifferences(const uchar* pixels, size_t step, ptrdiff_t
     for (int y = 2; y < TEMPLATE - 1; y += 4)
         for (int x = 1; x < TEMPLATE - 1; x += SHORTS)
         {
-            const auto pixelsAt = [&](ptrdiff_t beside) {
-                return v_reinterpret_as_s16(vx_load_expand(pixels + y * step + x + beside));
+            const auto pixelsAt = [&](ptrdiff_t offset) {
+                return v_reinterpret_as_s16(vx_load_expand(pixels + y * step + x + offset));
             };
             const v_int16 inside = vx_load(INSIDE + x - 1), centre = pixelsAt(0);
             const v_int16 before = (centre - pixelsAt(-next)) & inside;
@@ -215,7 +212,7 @@ void sum(const short* samples, const PatchWeights& weights, const PatchTemplate&
         sums[k] = v_reduce_sum(products[k]);
 }
 
-//! A row of sumProducts(), whose number compilers know.
+//! A row of sumProducts(); I is a constant so that compilers unroll its loop.
 template <int I> void sumProductsOf(const PatchTemplate& patch, int (*sums)[PARAMETERS])
 {
     v_int32 products[I + 1];
@@ -241,7 +238,7 @@ void sumProducts(const PatchTemplate& patch, int (*sums)[PARAMETERS])
     sumProductsOf<5>(patch, sums);
 }
 
-// The compiler makes vectors of this and the last function's loops.
+// Compilers vectorize the loops of this function and the next.
 void subtract(const short* samples, const PatchWeights& weights, const PatchTemplate& patch, int gain,
         int offset, short* residuals)
 {
@@ -271,14 +268,13 @@ Autocorrelation autocorrelate(const short* values)
 
 const RefinementKernels& refinementKernels()
 {
-    static const RefinementKernels kernels = {smooth, readWindow, sample, look, squareDifferences,
+    static const RefinementKernels kernels = {smooth, readWindow, sample, coarseSums, squareDifferences,
             makeTemplate, sum, sumProducts, subtract, autocorrelate};
     return kernels;
 }
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

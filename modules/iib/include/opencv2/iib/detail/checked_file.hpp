@@ -9,14 +9,12 @@
 
 #include <fstream>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @cond IGNORED
 
-/* For this library and for the module iib_index. Binary files that do not depend on the machine and
-tell when they are altered: eight letters that name the kind of file, u32 version, little-endian numbers and bytes, u64
-FNV-1a hash of all before. */
+/* Portable binary files with a checksum, for this library and for iib_index: eight letters that name the kind of file,
+u32 version, little-endian numbers and bytes, u64 FNV-1a hash of everything before it. */
 
 //! The 64-bit FNV-1a hash of a sequence of bytes.
 class Fnv1a
@@ -34,7 +32,7 @@ private:
     uint64 state;
 };
 
-//! The eight letters, the newest version that is understood, and what errors call such a file.
+//! The eight letters, the newest version that can be read, and the name of such a file in errors.
 struct FileKind
 {
     const char* letters;
@@ -42,7 +40,6 @@ struct FileKind
     const char* name;
 };
 
-//! Writes such a file, as a WholeFile.
 class CV_EXPORTS CheckedWriter
 {
 public:
@@ -50,23 +47,21 @@ public:
     void bytes(const void* data, size_t size);
     void number(uint64 value, int size);
     void real(float value);
-    //! How many there are, and each of them: all numbers of that size.
+    //! Writes the number of values, then the values, `size` bytes each.
     template <typename T> void list(const std::vector<T>& values, int size)
     {
         number(values.size(), size);
         for (T value : values)
             number((uint64)value, size);
     }
-    //! Writes the hash of all so far, and returns it.
+    //! Writes the hash so far, and returns it.
     uint64 seal();
-    //! Writes what no hash covers, after seal().
+    //! Writes bytes that the hash does not cover, after seal().
     void unchecked(const void* data, size_t size);
     //! Bytes so far.
     uint64 size() const { return written; }
-    //! As WholeFile's.
-    void finish();
-    //! Puts the file in its place, once it is on the disk. Throws if any write failed.
-    void commit();
+    void finish() { file->finish(); }
+    void commit() { file->commit(); }
 
 private:
     Ptr<WholeFile> file;
@@ -91,18 +86,17 @@ public:
             values.push_back((T)number(size));
         return values;
     }
-    //! Reads the hash of all so far, and returns it; throws if it does not fit.
+    //! Reads the hash of everything before it, and returns it; throws if it is wrong.
     uint64 seal();
-    //! The file's version, from 1 to the newest that is understood.
+    //! The file's version, from 1 to the newest that can be read.
     unsigned version() const { return format; }
-    //! Bytes that were read.
+    //! Bytes read so far.
     uint64 position() const { return whole - rest; }
     //! Throws if there is more to read.
     void expectEnd() const;
-    //! Throws if so many things of that size cannot be in what is left: whatever the file claims, no more memory is
-    //! asked for than it has bytes.
+    //! Throws if fewer than count * size bytes are left: a damaged file must not make the reader allocate more.
     void expect(uint64 count, uint64 size) const;
-    //! @throws cv::Exception that names the file, what it should be, and why it is not.
+    //! @throws cv::Exception that names the file, its expected kind, and the reason.
     void fail(const String& why) const;
 
 private:
@@ -116,7 +110,6 @@ private:
 
 //! @endcond
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

@@ -7,32 +7,28 @@
 
 #include "opencv2/core.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @cond IGNORED
 
-//! Of rows, among all images of a search.
+//! Bits of a row's index among all images of a search.
 static constexpr int INDEX_BITS = 40;
 
-//! How codes are kept so that a kernel compares one query with many of them at once. The numbers stand in files: what a
-//! number means, and what CodeLayout makes of it, never changes.
+//! How codes are packed for the kernels. Files contain these numbers, so their meaning never changes.
 enum CodePacking
 {
-    /** Words combined so that half as many population counts do. With c the plain words, word 0 is c[0], then
-    follow c[0] ^ ... ^ c[2k] ^ c[2k + 1] and c[2k + 1] ^ c[2k + 2]. The differences of two such codes are just
-    what a chain of full adders needs for parity and carry, and
-        Hamming distance = popcount(parity) + 2 * sum of popcount(carry). */
+    /** Combined words, which need half as many population counts. With plain words c, word 0 is c[0], followed by
+    c[0] ^ ... ^ c[2k] ^ c[2k + 1] and c[2k + 1] ^ c[2k + 2]. Differences of two such codes are the inputs of a chain of
+    full adders: Hamming distance = popcount(parity) + 2 * sum of popcount(carry). */
     PACKING_ADDERS = 1,
-    //! Plain bytes, whose distances are looked up in tables of the query's.
+    //! Plain bytes, whose distances are looked up in tables made for the query.
     PACKING_TABLES = 2
 };
 
-/** Where the bits of a descriptor lie in a code of 32-bit words, and how CODES_PER_BLOCK codes lie side by side in a
-CodeBlock.
+/** The places of a descriptor's bits in a code of 32-bit words, and of CODES_PER_BLOCK codes in a CodeBlock.
 
-A code has a segment for each level, filled up with zeros to whole words. Only the last level has two segments:
-every fourth of its words, a sample that tells much more than its beginning would, and the rest.
+A code has a segment for each level, padded with zeros to whole words. The last level has two segments: every fourth word,
+which represents the level better than its first words do, and the rest.
 
 A CodeBlock has words() * CODES_PER_BLOCK words: word w of code i is at w * CODES_PER_BLOCK + i with PACKING_ADDERS, and
 byte b of code i at byte b * CODES_PER_BLOCK + i with PACKING_TABLES. */
@@ -50,13 +46,11 @@ public:
     int bytes() const { return width; }
 
     int segments() const { return (int)ends.size(); }
-    //! Words up to the end of a segment; PACKING_ADDERS makes it odd.
+    //! Words up to the end of a segment; with PACKING_ADDERS an odd number.
     int end(int segment) const { return ends[segment]; }
-    //! Bits of descriptors in the first words.
+    //! Descriptor bits in the first `count` words.
     int bits(int count) const { return bitsBefore[count]; }
-    //! Words of a code.
     int words() const { return ends.back(); }
-    //! Words of a CodeBlock.
     size_t blockWords() const { return (size_t)words() * CODES_PER_BLOCK; }
 
     //! From a descriptor to the plain words of its code, and back.
@@ -65,33 +59,32 @@ public:
 
     //! Packs the words of one code; only with PACKING_ADDERS.
     void pack(const unsigned* plain, unsigned* packed) const;
-    //! Puts a descriptor into a lane of a CodeBlock. Neither this nor storeBlock() can fail.
+    //! Packs a descriptor into a lane of a CodeBlock. Does not throw, nor does storeBlock().
     void store(const uchar* descriptor, unsigned* block, int lane) const;
-    //! Fills a whole CodeBlock with CODES_PER_BLOCK descriptors that lie `step` bytes apart.
+    //! Packs CODES_PER_BLOCK descriptors, `step` bytes apart, into a CodeBlock.
     void storeBlock(const uchar* descriptors, size_t step, unsigned* block) const;
-    //! Gets the plain words of a code.
+    //! Unpacks the plain words of a code.
     void fetch(const unsigned* block, int lane, unsigned* plain) const;
 
 private:
-    //! A word's bytes in the descriptor, 1 to 4 of them; none for filling.
+    //! A word's bytes in the descriptor: 1 to 4 of them, 0 for padding.
     struct Place
     {
         int from, bytes;
     };
 
-    //! Word i of a descriptor's code, plain.
+    //! Plain word i of a descriptor's code.
     unsigned word(int i, const uchar* descriptor) const;
 
     std::vector<int> sizes, ends;
-    std::vector<Place> places;    // of each word
-    std::vector<int> bitsBefore;  // each word, and in all
+    std::vector<Place> places;    //!< of each word
+    std::vector<int> bitsBefore;  //!< each word, then the total
     int width;
     CodePacking packing;
 };
 
 //! @endcond
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

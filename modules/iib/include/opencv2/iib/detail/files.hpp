@@ -10,21 +10,20 @@
 #include <cstdio>
 #include <iosfwd>
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @cond IGNORED
 
-// For this library, the modules beside it and the Python package: whoever writes files does it by these.
+// How this library, the modules beside it and the Python package write files.
 
-//! A file's name as the system takes it. Windows: from UTF-8, as Python has it, else from the code page.
+//! A file's name in the system's encoding. Windows: read as UTF-8 or, if it is not valid UTF-8, in the code page.
 #ifdef _WIN32
 CV_EXPORTS std::wstring systemName(const String& name);
 #else
 inline const String& systemName(const String& name) { return name; }
 #endif
 
-//! The name. @throws cv::Exception for one with a zero byte: who opens it by a C string would open another file.
+//! The name. @throws cv::Exception for a zero byte, at which a C string would end.
 inline const String& checkedName(const String& name)
 {
     if (name.find('\0') != String::npos)
@@ -33,30 +32,30 @@ inline const String& checkedName(const String& name)
     return name;
 }
 
-//! Where open() finds or makes a file: at the end of links. @throws cv::Exception if they lead in a circle.
+//! The target of a symbolic link, even if nothing is there yet. @throws cv::Exception for a circle of links.
 CV_EXPORTS String endOfLinks(const String& name);
 
-/** A file that takes the place of another when it is whole: written beside it by a name that nothing has, flushed to the
-disk, renamed. The old one stays as it is until commit(), and if anything fails: who reads meanwhile gets one or the other. A
-symbolic link is followed, also if nothing is at its end yet. What is no regular file is refused: a folder, a device, a pipe. */
+/** Replaces a file at once: writes a temporary file beside it, flushes that to the disk, and renames it. Readers get the old
+file or the new one. If anything fails, the old file stays. Symbolic links are followed. Folders, devices and pipes are
+refused. */
 class CV_EXPORTS WholeFile
 {
 public:
-    //! @throws cv::Exception if it cannot be made.
+    //! @throws cv::Exception if the temporary file cannot be created.
     explicit WholeFile(const String& filename);
     WholeFile(const WholeFile&) = delete;
     WholeFile& operator=(const WholeFile&) = delete;
     ~WholeFile() { discard(); }
 
-    //! Where it is until commit(), for who writes by names.
+    //! The name of the temporary file.
     const String& part() const { return temporary; }
     void write(const void* data, size_t size);
-    //! Puts what was written on the disk, so that commit() has only to rename, as of several files. Nothing is
-    //! written after it. @throws cv::Exception if any write failed; the file is discarded then.
+    //! Flushes the file to the disk, so that commit() only renames it. @throws cv::Exception if any write failed; the
+    //! temporary file is removed then.
     void finish();
-    //! Puts the file in its place, once it is on the disk. @throws cv::Exception if any write failed.
+    //! Calls finish() and renames the file. @throws cv::Exception if any write failed.
     void commit();
-    //! Removes what was not committed.
+    //! Removes the temporary file.
     void discard();
 
 private:
@@ -66,26 +65,45 @@ private:
     std::FILE* stream;
 };
 
-//! Whether a name in a folder is that of a WholeFile of another one, which a killed process has left.
+//! Whether `name` is that of a temporary WholeFile of `file`.
 CV_EXPORTS bool isPartOf(const String& file, const String& name);
 
-//! Writes a file as a WholeFile.
+//! Writes a text as a WholeFile.
 CV_EXPORTS void writeText(const String& filename, const String& text);
 
-//! Opens a file, if it is a regular one.
+/** Algorithm::save(), but atomic: OpenCV's own leaves half a file on a full disk. @param name of the node around the output
+ of write(); empty: no node. */
+inline void saveWhole(const Algorithm& algorithm, const String& filename, const String& name = String())
+{
+    if (filename.size() > 3 && filename.compare(filename.size() - 3, 3, ".gz") == 0)
+        CV_Error(Error::StsBadArg,
+                "Cannot write " + filename +
+                        ": compressed files are not supported; end its name in .yml, .xml or .json");
+    FileStorage fs(filename, FileStorage::WRITE + FileStorage::MEMORY);
+    CV_Assert(fs.isOpened());
+    if (!name.empty())
+        fs << name << "{";
+    algorithm.write(fs);
+    if (!name.empty())
+        fs << "}";
+    writeText(filename, fs.releaseAndGetString());
+}
+
+//! Opens a regular file; leaves `file` closed for anything else.
 void openToRead(std::filebuf& file, const String& name);
 
-#ifndef OPENCV_BINDING_PARSER  // its numbers are nothing for Python
-//! Holds a lock among processes and threads to its end. The system gives the lock of a killed process back.
+#ifndef OPENCV_BINDING_PARSER  // the enumeration is not for Python
+//! A lock among processes and threads until the end of the object. A killed process loses its lock.
 class CV_EXPORTS FileLock
 {
 public:
-    //! The last two are refused while another holds their lock (Windows: by a file NAME.lock beside it, which goes with the lock).
+    //! The constructor waits for LOCK_FILE and throws for the others if another process holds the lock. On Windows, the
+    //! lock of an output is a file NAME.lock beside it, which is removed with the lock.
     enum What
     {
-        LOCK_FILE,     //!< made for the lock if it is missing, and stays; its lock is waited for
-        OUTPUT_FILE,   //!< made if it is missing, but on Windows
-        OUTPUT_FOLDER  //!< never made: another process may have removed it meanwhile
+        LOCK_FILE,     //!< created if it is missing, and kept
+        OUTPUT_FILE,   //!< created if it is missing, except on Windows
+        OUTPUT_FOLDER  //!< never created: another process may have removed it
     };
     //! @throws cv::Exception if it cannot be locked.
     FileLock(const String& name, What what);
@@ -104,7 +122,6 @@ private:
 
 //! @endcond
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

@@ -7,40 +7,38 @@
 
 #include "opencv2/iib/detail/code_layout.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @cond IGNORED
 
 class PackedCodes;
 struct HammingKernels;
 
-//! Some codes of a search over several.
+//! One of several PackedCodes that are searched together.
 struct CodePart
 {
     const PackedCodes* codes;
-    size_t firstRow;           //!< what results call the first of its rows
-    std::vector<bool> hidden;  //!< of each image, whether it is left out; empty: none is
+    size_t firstRow;           //!< index of its first row in results
+    std::vector<bool> hidden;  //!< for each image, whether it is left out; empty: no image is
 };
 
-/** Train codes of several images, one after the other. Those that are added are packed for the kernels that were the
-best when it was made. The module iib_index keeps such codes in files. */
+/** Train codes of several images, packed for the best kernels at the time of construction. The module iib_index keeps them in
+files. */
 class CV_EXPORTS PackedCodes
 {
 public:
-    //! @throws cv::Exception for level sizes that HierarchicalMatcher::create does not take, and for none.
+    //! @throws cv::Exception for level sizes that HierarchicalMatcher::create refuses.
     static void check(const std::vector<int>& levelSizes);
-    //! Whether a number in a file is a CodePacking.
+    //! Whether a number is a CodePacking.
     static bool knows(unsigned packing);
     //! Bytes of a CodeBlock.
     static size_t blockBytes(const std::vector<int>& levelSizes, unsigned packing);
 
     explicit PackedCodes(const std::vector<int>& levelSizes);
-    //! Those of CV_8U descriptors, a matrix for each image or one. @throws cv::Exception if their width is wrong.
+    //! @param descriptors CV_8U, a matrix for each image or one. @throws cv::Exception for a wrong width.
     PackedCodes(const std::vector<int>& levelSizes, InputArrayOfArrays descriptors);
-    /** Codes that lie elsewhere, and stay there if they are packed as the kernels want them; if not, they are copied.
-    They are only read.
-    @param packing a known one
+    /** Refers to codes in the caller's memory, or converts a copy if the kernels need another packing.
+    @param packing one of CodePacking
     @param starts first row of each image, and the number of all rows
     @param blocks a row a CodeBlock, CV_32S, aligned to 64 bytes */
     PackedCodes(const std::vector<int>& levelSizes, unsigned packing, const std::vector<size_t>& starts,
@@ -49,21 +47,21 @@ public:
     PackedCodes& operator=(const PackedCodes&) = delete;
 
     const CodeLayout& layout() const { return format; }
-    //! The kernels that layout() is for; others would misread it.
+    //! The kernels that layout() is for.
     const HammingKernels& kernels() const { return scans; }
     CodePacking packing() const;
 
     size_t rows() const { return starts.back(); }
     size_t images() const { return starts.size() - 1; }
     size_t rows(size_t image) const { return starts[image + 1] - starts[image]; }
-    //! From a row of all to its image; subtract start(image) for the row in it.
+    //! The image of a row; row - start(image) is its row in the image.
     size_t imageOf(size_t row) const;
     size_t start(size_t image) const { return starts[image]; }
 
     int blocks() const { return filled; }
-    //! The CodeBlocks of layout() from one on, without a gap. Lanes beyond rows() are zeros.
+    //! The CodeBlocks from `first` on, contiguous. Lanes beyond rows() are zeros.
     const unsigned* block(int first) const { return codes.ptr<unsigned>(first); }
-    //! All of them, CV_32S, a row each, continuous.
+    //! All CodeBlocks: CV_32S, a row each, continuous.
     Mat stored() const
     {
         return filled > 0 ? codes.rowRange(0, filled) : Mat(0, (int)format.blockWords(), CV_32S);
@@ -89,21 +87,19 @@ public:
             InputArray queries, int k, std::vector<int64>& rows, std::vector<int>& distances);
 
 private:
-    //! Makes that many blocks filled ones; the new ones are zeros. Changes nothing if it throws.
+    //! Appends blocks of zeros up to this number. Changes nothing if it throws.
     void grow(int blocks);
-    //! Makes memory for that many blocks.
     void allocate(int blocks);
 
     const HammingKernels& scans;
     const CodeLayout format;
     std::vector<size_t> starts;  //!< first row of each image, and the number of all rows
-    Mat codes;                   //!< a row a CodeBlock, which makes them aligned
-    int filled;                  //!< of these rows
+    Mat codes;                   //!< a row a CodeBlock, aligned
+    int filled;                  //!< rows in use
 };
 
 //! @endcond
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

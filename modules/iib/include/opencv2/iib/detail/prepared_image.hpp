@@ -9,17 +9,15 @@
 
 #include "opencv2/core.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @cond IGNORED
 
-//! An image as refineMatches and propagateMatches look at it, for who calls them with it more than once.
+//! A prepared image, for several calls of refineMatches and propagateMatches.
 struct CV_EXPORTS PreparedImage
 {
     PreparedImage() {}
-    /** @param image as in refineMatches.
-    @throws cv::Exception (StsBadArg) as refineMatches. */
+    //! @param image as in refineMatches. @throws cv::Exception (StsBadArg) as refineMatches.
     explicit PreparedImage(InputArray image);
 
     Mat pixels;  //!< CV_8U, locally normalized, a view of a larger matrix
@@ -39,7 +37,6 @@ CV_EXPORTS void propagateMatches(const PreparedImage& image1, const std::vector<
 
 //! @endcond
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

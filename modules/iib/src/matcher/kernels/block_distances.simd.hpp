@@ -2,8 +2,8 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Comparison of some queries with a CodeBlock: a Tile compares them, TileQueries prepares the queries, and PACKING is the packing
-// of codes that both understand.
+// Hamming distances of some queries to the codes of a CodeBlock: QueryGroup prepares the queries, BlockDistances compares them,
+// and PACKING is the packing of codes that both need.
 
 #pragma once
 
@@ -12,12 +12,9 @@
 
 #include "opencv2/iib/detail/code_layout.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
-
-// Vectors of one value for each code of a CodeBlock, which all kernels of the matcher share.
 
 typedef v_uint32 Words;
 typedef v_int32 Counts;
@@ -41,13 +38,13 @@ CV_ALWAYS_INLINE int negativeLanes(const Counts* values)
 }
 
 #if IIB_LOOKS_UP_BYTES && !IIB_COUNTS_LANES
-// By tables in registers, where bytes are looked up faster than the bits of words are counted.
+// By tables in registers, if a byte lookup is faster than counting the bits of words.
 
 const CodePacking PACKING = PACKING_TABLES;
-// Compared at once with a CodeBlock: as many as the registers hold sums of. Where lists are kept of each, fewer.
+// Queries compared at once with a CodeBlock: as many as registers hold sums for. Scans with lists use fewer.
 const int QUERIES = 8, LISTED_QUERIES = 4;
 
-// A vector takes POSITIONS bytes of each of the CODES_PER_BLOCK codes.
+// A vector holds POSITIONS bytes of each of the CODES_PER_BLOCK codes.
 typedef v_uint8 Bytes;
 const int BYTES = VTraits<Bytes>::max_nlanes, POSITIONS = BYTES / CODES_PER_BLOCK;
 
@@ -57,10 +54,10 @@ inline Bytes highHalves(const Bytes& x)
     return lowHalves(v_reinterpret_as_u8(v_reinterpret_as_u16(x) >> 4));
 }
 
-//! The distances of half a byte to all others, for two queries: that of the second one in the high half.
+//! The distances of two queries' half bytes to all half bytes; the second query's in the high half.
 struct HalfDistances
 {
-    uchar of[256][16];  //!< by the query's half byte, and 16 times the second query's
+    uchar of[256][16];  //!< by the first query's half byte + 16 * the second query's
     HalfDistances()
     {
         for (int i = 0; i < 256 * 16; i++)
@@ -68,13 +65,13 @@ struct HalfDistances
     }
 };
 
-/** The queries that are compared at once, as tables: for each half byte of a train code its distance to the
- query's. Two queries share a table, one in the low and one in the high halves of its bytes. A vector's tables are
- those of its low half bytes, then those of its high ones. */
-class TileQueries
+/** The queries that are compared at once, as tables: the distances of each half byte to those of train codes. Two queries
+ share a table, in the low and in the high halves of its bytes. A vector of codes has tables for its low half bytes, then
+ for its high ones. */
+class QueryGroup
 {
 public:
-    explicit TileQueries(const CodeLayout& l) : bytes(4 * l.words()), tables(QUERIES / 2 * pairSize()) {}
+    explicit QueryGroup(const CodeLayout& l) : bytes(4 * l.words()), tables(QUERIES / 2 * pairSize()) {}
 
     //! @param plain words of the first Q queries.
     template <int Q> void set(const unsigned* plain)
@@ -105,14 +102,14 @@ private:
     AlignedBuffer<uchar> tables;
 };
 
-//! Q queries against a CodeBlock, compared up to some word.
-template <int Q> class Tile
+//! The distances of Q queries to the codes of a CodeBlock, up to some word.
+template <int Q> class BlockDistances
 {
 public:
     static constexpr int SIZE = Q * VECTORS, PAIRS = (Q + 1) / 2, WIDE = POSITIONS > 1 ? 1 : 2;
 
     //! Compares words 0 to `to`.
-    CV_ALWAYS_INLINE void start(const TileQueries& queries, const unsigned* block, int to)
+    CV_ALWAYS_INLINE void start(const QueryGroup& queries, const unsigned* block, int to)
     {
         for (int i = 0; i < SIZE; i++)
             counts[i] = vx_setzero_s32();
@@ -120,7 +117,7 @@ public:
     }
 
     //! Compares words `from` to `to`.
-    CV_ALWAYS_INLINE void advance(const TileQueries& queries, const unsigned* block, int from, int to)
+    CV_ALWAYS_INLINE void advance(const QueryGroup& queries, const unsigned* block, int from, int to)
     {
         for (; to - from > WIDEST; from += WIDEST)
             addWords(queries, block, from, from + WIDEST);
@@ -134,11 +131,11 @@ public:
     }
 
 private:
-    static constexpr int WIDEST = 2000;  // words that add up in 16 bits: 2047 times 32 at most
+    static constexpr int WIDEST = 2000;  // words whose sum fits 16 bits: up to 2047 * 32 bits
 
-    CV_ALWAYS_INLINE void addWords(const TileQueries& queries, const unsigned* block, int from, int to)
+    CV_ALWAYS_INLINE void addWords(const QueryGroup& queries, const unsigned* block, int from, int to)
     {
-        const int MOST = 30;  // vectors that add up in bytes: 31 times 8 at most
+        const int MOST = 30;  // vectors whose sum fits a byte: up to 31 * 8 bits
         v_uint16 wide[Q * WIDE];
         for (int i = 0; i < Q * WIDE; i++)
             wide[i] = vx_setzero_u16();
@@ -169,10 +166,10 @@ private:
                 addWide(wide[q * WIDE + k], counts + q * VECTORS + k * VECTORS / 2);
     }
 
-    // A sum of N distances has to fit half a byte: a distance is 4 at most, so N is 3 at most.
+    // A sum of N distances must fit half a byte. A distance is at most 4, so N is at most 3.
     template <int N>
     static CV_ALWAYS_INLINE void addVectors(
-            Bytes* low, v_uint16* high, const TileQueries& queries, const unsigned* block, int v)
+            Bytes* low, v_uint16* high, const QueryGroup& queries, const unsigned* block, int v)
     {
         for (int half = 0; half < 2; half++)
         {
@@ -195,19 +192,19 @@ private:
         }
     }
 
-    // addVectors() shifts the high halves but does not mask them, which is cheaper, so each sum also has 16 times the low
-    // half of every second byte. That is subtracted here, once. Modulo 2^16 this is exact, since sums fit in bytes.
+    // addVectors() does not mask the high halves, so each sum also has 16 times the low half of every second byte. It is
+    // subtracted here, once; exact modulo 2^16, since sums fit in bytes.
     static CV_ALWAYS_INLINE Bytes highSums(const Bytes& low, const v_uint16& high)
     {
         return v_reinterpret_as_u8(v_sub_wrap(high, (v_reinterpret_as_u16(low) >> 8) << 4));
     }
 
-    // The positions of a vector come together.
+    // Adds up the positions of a vector.
     static CV_ALWAYS_INLINE void widen(const Bytes& sums, v_uint16* wide)
     {
         v_uint16 a, b;
         v_expand(sums, a, b);
-        // A vector holds the 16 codes POSITIONS times, one after the other: its halves, or quarters, are added.
+        // a vector has POSITIONS values of each of the 16 codes: its halves, or quarters, are added
         wide[0] = wide[0] + (WIDE > 1 ? a : a + b);
         if (WIDE > 1)
             wide[WIDE - 1] = wide[WIDE - 1] + b;
@@ -225,14 +222,13 @@ private:
 };
 
 #else
-// By adders, where the bits of a word are counted fast, or there are no tables in registers.
+// By full adders, if bits of words are counted fast, or there is no byte lookup.
 
 const CodePacking PACKING = PACKING_ADDERS;
 
-// Queries compared at once with a CodeBlock: as many as the registers hold.
 const int QUERIES = WIDTH >= 16 ? 4 : WIDTH >= 8 ? 2 : 1, LISTED_QUERIES = QUERIES;
 
-// Bit counts of words, in a form that is cheap to compute; up to MOST may be added before total().
+// Bit counts of words, in a form that is cheap to add; up to MOST are added before total().
 const int MOST = 31;
 #if IIB_COUNTS_LANES
 typedef v_uint32 Partial;
@@ -247,10 +243,10 @@ inline Counts total(const Partial& x) { return v_reinterpret_as_s32(v_dotprod_ex
 #endif
 
 //! The queries that are compared at once.
-class TileQueries
+class QueryGroup
 {
 public:
-    explicit TileQueries(const CodeLayout& l) : layout(l), codes(QUERIES * l.words()) {}
+    explicit QueryGroup(const CodeLayout& l) : layout(l), codes(QUERIES * l.words()) {}
 
     //! @param plain words of the first Q queries.
     template <int Q> void set(const unsigned* plain)
@@ -265,15 +261,15 @@ private:
     AutoBuffer<unsigned> codes;
 };
 
-//! Q queries against a CodeBlock, compared up to some word. Its loops run over all vectors in one go, so that
-//! compilers unroll them and keep everything in registers.
-template <int Q> class Tile
+//! The distances of Q queries to the codes of a CodeBlock, up to some word. Loops run over all vectors, so that compilers
+//! unroll them and keep everything in registers.
+template <int Q> class BlockDistances
 {
 public:
     static constexpr int SIZE = Q * VECTORS;
 
     //! Compares words 0 to `to`.
-    CV_ALWAYS_INLINE void start(const TileQueries& queries, const unsigned* block, int to)
+    CV_ALWAYS_INLINE void start(const QueryGroup& queries, const unsigned* block, int to)
     {
         for (int i = 0; i < SIZE; i++)
             parity[i] = vx_load(block + i % VECTORS * WIDTH) ^ vx_setall_u32(queries[i / VECTORS][0]);
@@ -286,7 +282,7 @@ public:
     }
 
     //! Compares words `from` to `to`.
-    CV_ALWAYS_INLINE void advance(const TileQueries& queries, const unsigned* block, int from, int to)
+    CV_ALWAYS_INLINE void advance(const QueryGroup& queries, const unsigned* block, int from, int to)
     {
         while (from < to)
         {
@@ -307,7 +303,7 @@ public:
 
 private:
     CV_ALWAYS_INLINE void addSteps(
-            Partial* partial, const TileQueries& queries, const unsigned* block, int from, int to)
+            Partial* partial, const QueryGroup& queries, const unsigned* block, int from, int to)
     {
         Words chain[SIZE];  // a copy, which compilers keep in registers
         Partial sum[SIZE];
@@ -343,5 +339,4 @@ private:
 
 }  // namespace
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
