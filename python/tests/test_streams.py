@@ -23,7 +23,7 @@ def command(*arguments, **options):
     return subprocess.run([sys.executable, '-m', 'opencv_iib', *map(str, arguments)], capture_output='stdout' not in options, **options)
 
 
-class Telling(unittest.TestCase):
+class Output(unittest.TestCase):
 
     def test_work_goes_on_where_nobody_can_read_of_it(self):
         closed = io.StringIO()
@@ -43,7 +43,7 @@ class Telling(unittest.TestCase):
         for stream in streams[2:]:
             stream.close()
 
-    def test_a_name_of_two_lines_is_told_on_one(self):
+    def test_a_name_of_two_lines_is_printed_on_one(self):
         with mock.patch('sys.stderr', io.StringIO()) as stream:
             _streams.note('a\nb.png: what\r\nelse')
         self.assertEqual(stream.getvalue(), 'a\\nb.png: what\\nelse\n')
@@ -115,7 +115,7 @@ class Commands(InFolder):
         self.assertRegex(done.stderr.decode(), r'^match: - cannot be written: No space left[^\n]*\n$')
 
     @unittest.skipIf(shutil.which('bash') is None, 'no bash')
-    def test_what_is_not_open_is_told_before_work(self):
+    def test_closed_streams_are_found_before_work(self):
         for out in ('-', '/dev/stdout'):
             done = subprocess.run(['bash', '-c', f'{sys.executable} -m opencv_iib match {self.a} {self.a} --out {out} >&-'], capture_output=True)
             self.assertEqual((done.returncode, done.stderr.decode()), (2, f'match: {out} cannot be written: it is not open\n'))
@@ -133,7 +133,7 @@ class Commands(InFolder):
             shutil.copytree(os.path.join(mapped(), 'dark'), images / str(n))
         localize = ['localize', '--map', os.path.join(mapped(), 'map'), '--images', images, '--out', out, '--camera', CAMERA]
         align = ['align', next(images.rglob('*.png')), images, '--out', out]
-        for arguments, told in ((localize, b'interrupted\n'), (align, b'interrupted; the same command goes on from here\n')):
+        for arguments, message in ((localize, b'interrupted\n'), (align, b'interrupted; the same command goes on from here\n')):
             for pause in (.05, None):
                 begun = subprocess.Popen([sys.executable, '-m', 'opencv_iib', *map(str, arguments), '--workers', '4'], stderr=subprocess.PIPE)
                 while not (out.exists() and any(out.iterdir())):
@@ -144,7 +144,7 @@ class Commands(InFolder):
                     time.sleep(pause)
                     begun.send_signal(signal.SIGINT)
                 errors = begun.communicate()[1]
-                self.assertEqual((begun.returncode, errors[-len(told):]), (130, told))
+                self.assertEqual((begun.returncode, errors[-len(message):]), (130, message))
                 self.assertNotIn(b'terminate', errors)
                 shutil.rmtree(out, ignore_errors=True)
 
@@ -170,7 +170,7 @@ class Mistakes(InFolder):
 
     def test_in_options_end_with_2(self):
         place = ['--images', self.folder, '--out', self.folder / 'out']
-        for told, *arguments in (
+        for message, *arguments in (
                 ("opencv-iib: argument command: invalid choice: 'nothing'", 'nothing'), ("--model: invalid choice: 'x' (choose from TRANSLATION, ",
                  'align', 'a', 'b', '--out', 'c', '--model', 'x'), ('workers is 3000000000', 'map', '--model', 'm', *place, '--workers', '3000000000'),
                 ('points is 3000000000', 'map', '--model', 'm', *place, '--points', '3000000000'),
@@ -183,32 +183,54 @@ class Mistakes(InFolder):
                 ('invalid choice', 'colmap', self.folder, 'x.db', '--verify', 'no'), ('workers is 0', 'colmap', self.folder, 'x.db', '--workers', '0'),
                 ('workers is 0', 'localize', '--map', 'm', *place, '--workers', '0'),
                 ('workers is 0', 'match', 'a', 'b', '--workers', '0'), ('workers is 0', 'localize', '--map', 'm', '--images', '-', '--workers', '0'),
+                ('points is -1', 'map', '--model', 'm', *place, '--points', '-1', '--orb-and-akaze'), ('neighbours is -1', 'colmap', self.folder, 'x.db', '--neighbours', '-1'),
+                ('focal is nan', 'colmap', self.folder, 'x.db', '--focal', 'nan'), ('two images are needed', 'match', 'a'),
                 ('unrecognized arguments: --wrong', 'align', 'a', '--out', 'c', 'b', '--wrong'), ('unrecognized arguments: d', 'demo', 'a', 'b', 'd'), ('arguments are required', 'update')):
             with self.subTest(arguments):
                 status, out, errors = run_command(*arguments)
                 self.assertEqual((status, out), (2, ''))
-                self.assertRegex(errors, rf'^(?=[^\n]*{re.escape(told)})(opencv-iib|{arguments[0]}): [^\n]*\n$')
+                self.assertRegex(errors, rf'^(?=[^\n]*{re.escape(message)})(opencv-iib|{arguments[0]}): [^\n]*\n$')
 
     @unittest.skipIf(cv2 is None, 'no cv2')
     def test_files_that_cannot_be_meant_end_with_2_before_work(self):
-        image, folder = self.folder / 'a.png', self.folder / 'images'
+        image, folder, listing = self.folder / 'a.png', self.folder / 'images', self.folder / 'pairs.txt'
         folder.mkdir()
         cv2.imwrite(str(image), texture(60, 60))
-        shutil.copy(image, folder)
-        out, gone, inside = self.folder / 'out', self.folder / 'gone', image / 'x'
+        for name in ('a.png', 'b.png'):
+            shutil.copy(image, folder / name)
+        listing.write_text('a.png b.png\n')
+        for name, text in (('none.txt', ''), ('itself.txt', 'a.png a.png\n'), ('unknown.txt', 'no image\n'), ('imu.csv', '1,0,0,0,0,0,9.81\n')):
+            (self.folder / name).write_text(text)
+        out, gone, inside, imu = self.folder / 'out', self.folder / 'gone', image / 'x', self.folder / 'imu.csv'
         localize, there = ('localize', '--map', folder), ['--images', folder]
+        pairs = 'match', *there, '--pairs'
+        wrong_lists = [(message, *command, self.folder / name) for message, name in (
+            ('there is no list|neither a file nor', 'gone'), ('has no pair', 'none.txt'), ('a.png is paired with itself', 'itself.txt'),
+            ('no image is called no or image', 'unknown.txt')) for command in ((*pairs[:3], '--out', out, '--pairs'), ('colmap', folder, self.folder / 'x.db', '--pairs'))]
         files = set(self.folder.rglob('*'))
-        for told, *arguments in (
+        for message, *arguments in (
                 ('there is no file', 'match', image, gone), ('there is no file', 'match', gone, image), ('is a folder', 'match', image, folder),
                 ('there is no file', 'demo', gone, image), ('is a folder', 'demo', image, folder), ('an input too', 'demo', image, image, '--out', image),
                 ('an input too', 'match', image, image, '--out', image), ('another output', 'match', image, image, '--out', out, '--picture', out),
                 ('there is no folder', 'match', image, image, '--out', gone / 'x.csv'), ('is a folder', 'match', image, image, '--out', folder),
                 ('there is no folder', 'match', '--pairs', image, '--images', gone, '--out', out),
+                *((r'end its name in \.csv, \.json or \.npz', 'match', image, image, '--out', self.folder / name) for name in ('x.h5', 'x.png', 'x.npy', 'x.parquet', 'x')),
+                *((r'in \.h5 or \.hdf5', *pairs, listing, '--out', name) for name in ('-', '/dev/stdout', self.folder / 'x.json', self.folder / 'x.csv', self.folder / 'x.parquet')),
+                *(('end its name', 'match', image, image, '--picture', self.folder / name) for name in ('no.suffix', 'x.exr', 'x.pgm')),
+                *(('end its name in .png', 'demo', image, image, '--out', self.folder / name) for name in ('x.foo', 'x.exr')),
+                ('there is no folder', 'match', image, image, '--picture', gone / 'x.png'), ('cannot be written', 'demo', image, image, '--out', 'm' * 300 + '.png'),
+                ('60 x 60', 'match', image, image, '--camera', 'PINHOLE,9,9,400,400,4,4'), ('its camera has 9 x 9', *pairs, listing, '--out', out, '--camera', 'PINHOLE,9,9,5,5,4,4'),
+                ('an input too', 'match', folder / 'a.png', folder / 'a.png', '--mask', image, '--picture', image), ('an input too', 'demo', folder / 'a.png', folder / 'a.png', '--mask', image, '--out', image),
+                ('an input too', 'match', folder / 'a.png', folder / 'a.png', '--mask', image, '--out', image), ('is a file', *pairs, listing, '--out', listing),
+                ('an input too', 'colmap', folder, image, '--force', '--mask', image), ('an input too', *localize, *there, '--out', imu, '--imu', imu),
+                *(('goes with', 'match', '--pairs', listing, *wrong) for wrong in ([], there, [*there, '--out', out, 'a.png'], [*there, '--out', out, '--picture', 'x'])),
+                *wrong_lists,
                 ('there is no file', 'align', gone, image, '--out', out), ('there is no file', 'align', image, gone, '--out', out),
                 ('no image is called', 'align', image, folder / '*.jpg', '--out', out), ('is a folder', 'align', folder, image, '--out', out),
                 ('known are a folder; one with a suffix', 'align', image, folder, '--out', self.folder / 'x.zip'), ('known are a folder', 'align', image, folder, '--out', '-'),
                 ('is a file', 'align', image, folder, '--out', image), ('is a file', 'align', image, folder, '--out', inside),
-                ('would be replaced', 'align', image, folder / 'a.png', '--out', folder),
+                ('there is no file', 'align', image, image, gone, '--out', out),
+                *(('would be replaced', 'align', image, images, '--out', folder) for images in (folder / 'a.png', folder, folder / '*')),
                 ('there is no folder', 'colmap', gone, self.folder / 'x.db'), ('there is no folder', 'colmap', folder, gone / 'x.db'),
                 ('is a folder', 'colmap', folder, folder), ('an input too', 'colmap', folder, folder / 'a.png', '--force'),
                 ('there is no database', 'hloc', gone, self.folder / 'f.h5', self.folder / 'm.h5', self.folder / 'p'),
@@ -223,9 +245,9 @@ class Mistakes(InFolder):
                 ('there is no folder', 'localize', '--map', gone, '--images', '-'), ('there is no file', *localize, *there, '--out', out, '--imu', gone),
                 ('there is no folder', 'update', '--map', gone, *there), ('there is no folder', 'update', '--map', folder, '--images', gone),
                 ('is a file', 'update', '--map', folder, *there, '--out', image)):
-            with self.subTest(arguments):
+            with self.subTest(arguments), mock.patch('opencv_iib.features.Features.__call__', side_effect=AssertionError):
                 status, out_, errors = run_command(*arguments)
-                self.assertRegex(errors, rf'^{arguments[0]}: [^\n]*{re.escape(told)}[^\n]*\n$')
+                self.assertRegex(errors, rf'^{arguments[0]}: [^\n]*(?:{message})[^\n]*\n$')
                 self.assertEqual((status, out_), (2, ''))
                 self.assertEqual(set(self.folder.rglob('*')), files)
 
