@@ -10,6 +10,7 @@ import sys
 import time
 import unittest
 from contextlib import redirect_stdout
+from pathlib import Path
 from unittest import mock
 
 from opencv_iib import _streams
@@ -193,63 +194,53 @@ class Mistakes(InFolder):
 
     @unittest.skipIf(cv2 is None, 'no cv2')
     def test_files_that_cannot_be_meant_end_with_2_before_work(self):
-        image, folder, listing = self.folder / 'a.png', self.folder / 'images', self.folder / 'pairs.txt'
-        folder.mkdir()
-        cv2.imwrite(str(image), texture(60, 60))
-        for name in ('a.png', 'b.png'):
-            shutil.copy(image, folder / name)
-        listing.write_text('a.png b.png\n')
-        for name, text in (('none.txt', ''), ('itself.txt', 'a.png a.png\n'), ('unknown.txt', 'no image\n'), ('imu.csv', '1,0,0,0,0,0,9.81\n')):
-            (self.folder / name).write_text(text)
-        out, gone, inside, imu = self.folder / 'out', self.folder / 'gone', image / 'x', self.folder / 'imu.csv'
-        localize, there = ('localize', '--map', folder), ['--images', folder]
-        pairs = 'match', *there, '--pairs'
-        wrong_lists = [(message, *command, self.folder / name) for message, name in (
-            ('there is no list|neither a file nor', 'gone'), ('has no pair', 'none.txt'), ('a.png is paired with itself', 'itself.txt'),
-            ('no image is called no or image', 'unknown.txt')) for command in ((*pairs[:3], '--out', out, '--pairs'), ('colmap', folder, self.folder / 'x.db', '--pairs'))]
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        os.mkdir('images')
+        for name in ('a.png', 'images/a.png', 'images/b.png'):
+            cv2.imwrite(name, texture(60, 60))
+        for name, text in (('pairs', 'a.png b.png\n'), ('empty', ''), ('itself', 'a.png a.png\n'), ('unknown', 'no image\n'), ('imu.csv', '1,0,0,0,0,0,9.81\n')):
+            Path(name).write_text(text)
         files = set(self.folder.rglob('*'))
-        for message, *arguments in (
-                ('there is no file', 'match', image, gone), ('there is no file', 'match', gone, image), ('is a folder', 'match', image, folder),
-                ('there is no file', 'demo', gone, image), ('is a folder', 'demo', image, folder), ('an input too', 'demo', image, image, '--out', image),
-                ('an input too', 'match', image, image, '--out', image), ('another output', 'match', image, image, '--out', out, '--picture', out),
-                ('there is no folder', 'match', image, image, '--out', gone / 'x.csv'), ('is a folder', 'match', image, image, '--out', folder),
-                ('there is no folder', 'match', '--pairs', image, '--images', gone, '--out', out),
-                *((r'end its name in \.csv, \.json or \.npz', 'match', image, image, '--out', self.folder / name) for name in ('x.h5', 'x.png', 'x.npy', 'x.parquet', 'x')),
-                *((r'in \.h5 or \.hdf5', *pairs, listing, '--out', name) for name in ('-', '/dev/stdout', self.folder / 'x.json', self.folder / 'x.csv', self.folder / 'x.parquet')),
-                *(('end its name', 'match', image, image, '--picture', self.folder / name) for name in ('no.suffix', 'x.exr', 'x.pgm')),
-                *(('end its name in .png', 'demo', image, image, '--out', self.folder / name) for name in ('x.foo', 'x.exr')),
-                ('there is no folder', 'match', image, image, '--picture', gone / 'x.png'), ('cannot be written', 'demo', image, image, '--out', 'm' * 300 + '.png'),
-                ('60 x 60', 'match', image, image, '--camera', 'PINHOLE,9,9,400,400,4,4'), ('its camera has 9 x 9', *pairs, listing, '--out', out, '--camera', 'PINHOLE,9,9,5,5,4,4'),
-                ('an input too', 'match', folder / 'a.png', folder / 'a.png', '--mask', image, '--picture', image), ('an input too', 'demo', folder / 'a.png', folder / 'a.png', '--mask', image, '--out', image),
-                ('an input too', 'match', folder / 'a.png', folder / 'a.png', '--mask', image, '--out', image), ('is a file', *pairs, listing, '--out', listing),
-                ('an input too', 'colmap', folder, image, '--force', '--mask', image), ('an input too', *localize, *there, '--out', imu, '--imu', imu),
-                *(('goes with', 'match', '--pairs', listing, *wrong) for wrong in ([], there, [*there, '--out', out, 'a.png'], [*there, '--out', out, '--picture', 'x'])),
-                *wrong_lists,
-                ('there is no file', 'align', gone, image, '--out', out), ('there is no file', 'align', image, gone, '--out', out),
-                ('no image is called', 'align', image, folder / '*.jpg', '--out', out), ('is a folder', 'align', folder, image, '--out', out),
-                ('known are a folder; one with a suffix', 'align', image, folder, '--out', self.folder / 'x.zip'), ('known are a folder', 'align', image, folder, '--out', '-'),
-                ('is a file', 'align', image, folder, '--out', image), ('is a file', 'align', image, folder, '--out', inside),
-                ('there is no file', 'align', image, image, gone, '--out', out),
-                *(('would be replaced', 'align', image, images, '--out', folder) for images in (folder / 'a.png', folder, folder / '*')),
-                ('there is no folder', 'colmap', gone, self.folder / 'x.db'), ('there is no folder', 'colmap', folder, gone / 'x.db'),
-                ('is a folder', 'colmap', folder, folder), ('an input too', 'colmap', folder, folder / 'a.png', '--force'),
-                ('there is no database', 'hloc', gone, self.folder / 'f.h5', self.folder / 'm.h5', self.folder / 'p'),
-                ('there is no folder', 'hloc', image, gone / 'f.h5', self.folder / 'm.h5', self.folder / 'p'),
-                ('an input too', 'hloc', image, image, self.folder / 'm.h5', self.folder / 'p'),
-                ('there is no folder', 'map', '--model', gone, *there, '--out', out), ('there is no folder', 'map', '--model', folder, '--images', gone, '--out', out),
-                ('is a file', 'map', '--model', folder, *there, '--out', image), ('is a file', 'map', '--model', folder, *there, '--out', inside),
-                ('there is no folder', 'localize', '--map', gone, *there, '--out', out), ('there is no folder', *localize, '--images', gone, '--out', out),
-                ('known are a folder, X.csv and -; one with a suffix', *localize, *there, '--out', self.folder / 'poses.json'),
-                ('known are a folder; one with a suffix', 'map', '--model', folder, *there, '--out', self.folder / 'x.zip'), ('is a file', *localize, *there, '--out', inside),
-                ('there is no folder', *localize, *there, '--out', gone / 'x.csv'), ('would be replaced', *localize, *there, '--out', folder),
-                ('there is no folder', 'localize', '--map', gone, '--images', '-'), ('there is no file', *localize, *there, '--out', out, '--imu', gone),
-                ('there is no folder', 'update', '--map', gone, *there), ('there is no folder', 'update', '--map', folder, '--images', gone),
-                ('is a file', 'update', '--map', folder, *there, '--out', image)):
-            with self.subTest(arguments), mock.patch('opencv_iib.features.Features.__call__', side_effect=AssertionError):
-                status, out_, errors = run_command(*arguments)
-                self.assertRegex(errors, rf'^{arguments[0]}: [^\n]*(?:{message})[^\n]*\n$')
-                self.assertEqual((status, out_), (2, ''))
-                self.assertEqual(set(self.folder.rglob('*')), files)
+        pairs, localize = 'match --images images --pairs', 'localize --map images --images images --out'
+        for message, commands in {
+                'there is no file': f'match a.png gone, match gone a.png, demo gone a.png, align gone a.png --out out, align a.png gone --out out, '
+                                    f'align a.png a.png gone --out out, {localize} out --imu gone',
+                'no image is called': 'align a.png images/*.jpg --out out',
+                'is a folder': 'match a.png images, match a.png a.png --out images, demo a.png images, align images a.png --out out, colmap images images',
+                'there is no folder': f'match a.png a.png --out gone/x.csv, match a.png a.png --picture gone/x.png, match --pairs pairs --images gone --out out, '
+                                      f'colmap gone x.db, colmap images gone/x.db, hloc a.png gone/f.h5 m.h5 p, map --model gone --images images --out out, '
+                                      f'map --model images --images gone --out out, localize --map gone --images images --out out, '
+                                      f'localize --map images --images gone --out out, {localize} gone/x.csv, localize --map gone --images -, '
+                                      f'update --map gone --images images, update --map images --images gone',
+                'is a file': f'align a.png images --out a.png, align a.png images --out a.png/x, {pairs} pairs --out pairs, map --model images --images images --out a.png, '
+                             f'map --model images --images images --out a.png/x, {localize} a.png/x, update --map images --images images --out a.png',
+                'an input too': f'demo a.png a.png --out a.png, match a.png a.png --out a.png, match images/a.png images/a.png --mask a.png --picture a.png, '
+                                f'match images/a.png images/a.png --mask a.png --out a.png, demo images/a.png images/a.png --mask a.png --out a.png, '
+                                f'colmap images images/a.png --force, colmap images a.png --force --mask a.png, hloc a.png a.png m.h5 p, {localize} imu.csv --imu imu.csv',
+                'another output': 'match a.png a.png --out out --picture out',
+                'would be replaced': f'align a.png images/a.png --out images, align a.png images --out images, align a.png images/* --out images, {localize} images',
+                'cannot be written': f'demo a.png a.png --out {"m" * 300}.png',
+                r'end its name in \.csv, \.json or \.npz': ', '.join(f'match a.png a.png --out {name}' for name in ('x.h5', 'x.png', 'x.npy', 'x.parquet', 'x')),
+                r'in \.h5 or \.hdf5': ', '.join(f'{pairs} pairs --out {name}' for name in ('-', '/dev/stdout', 'x.json', 'x.csv', 'x.parquet')),
+                'end its name in .png': ', '.join([f'match a.png a.png --picture {name}' for name in ('no.suffix', 'x.exr', 'x.pgm')]
+                                                  + [f'demo a.png a.png --out {name}' for name in ('x.foo', 'x.exr')]),
+                'known are a folder, X.csv and -; one with a suffix': f'{localize} poses.json',
+                'known are a folder; one with a suffix': 'align a.png images --out x.zip, align a.png images --out -, map --model images --images images --out x.zip',
+                'there is no database': 'hloc gone f.h5 m.h5 p',
+                'there is no list|neither a file nor': f'{pairs} gone --out out, colmap images x.db --pairs gone',
+                'has no pair': f'{pairs} empty --out out, colmap images x.db --pairs empty',
+                'a.png is paired with itself': f'{pairs} itself --out out, colmap images x.db --pairs itself',
+                'no image is called no or image': f'{pairs} unknown --out out, colmap images x.db --pairs unknown',
+                'goes with': f'match --pairs pairs, {pairs} pairs, {pairs} pairs --out out a.png, {pairs} pairs --out out --picture x',
+                '60 x 60': 'match a.png a.png --camera PINHOLE;9;9;400;400;4;4',
+                'its camera has 9 x 9': f'{pairs} pairs --out out --camera PINHOLE;9;9;5;5;4;4'}.items():
+            for command in commands.split(', '):
+                with self.subTest(command), mock.patch('opencv_iib.features.Features.__call__', side_effect=AssertionError):
+                    status, out, errors = run_command(*command.replace(';', ',').split())
+                    self.assertRegex(errors, rf'^{command.split()[0]}: [^\n]*(?:{message})[^\n]*\n$')
+                    self.assertEqual((status, out), (2, ''))
+                    self.assertEqual(set(self.folder.rglob('*')), files)
 
 
 if __name__ == '__main__':
