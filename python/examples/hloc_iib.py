@@ -3,13 +3,13 @@
     from hloc import extract_features, match_features
     features = {'output': 'feats-iib', 'model': {'name': 'iib', 'max_keypoints': 2000},
                 'preprocessing': {'grayscale': True, 'resize_max': 1600}}
-    matches = {'output': 'matches-iib',  # of distances squared, which are bits: .92 of the bits
+    matches = {'output': 'matches-iib',  # square root, since hloc squares it: .92 of the bits
                'model': {'name': 'nearest_neighbor', 'do_mutual_check': True, 'ratio_threshold': .92 ** .5}}
     extract_features.main(features, images, outputs)
     match_features.main(matches, pairs, features['output'], outputs)
 
-Each bit becomes a number of 1/32 or -1/32, so that descriptors have length 1 and differ by four times the share of bits that
-differ, squared: hloc's own matcher gives the matches that opencv_iib.HierarchicalMatcher.createRecommended() finds in both directions.
+Each bit becomes 1/32 or -1/32. Then descriptors have length 1, and their squared distance is four times the share of different bits. So
+hloc's own matcher finds the matches that opencv_iib.HierarchicalMatcher.createRecommended() finds in both directions.
 """
 import numpy as np
 import torch

@@ -5,16 +5,19 @@
 
 prints CSV: the rows of doc/results/photographs.csv, from which tools/pages makes the tables of doc/colmap.md.
 
-A SCENE is a folder with images/. With poses.txt too (TUM: name, camera's centre, camera to world) the cameras are compared with
-the truth, else those of two methods with each other: after a robust similarity, the medians of a centre's distance in per cent
-of that to what the camera sees, and of the angle between both, and how many images are within 5 % and 5 degrees.
+A SCENE is a folder with images/. Cameras are compared with poses.txt (TUM: name, camera's centre, camera to world), or without it those of
+two methods with each other. After a robust similarity the rows have medians of the centres' distances, in per cent of the distance to what
+the camera sees, medians of the angles, and how many images are within 5 % and 5 degrees.
 
-`chain` is HessianDetector and UNIVERSAL, `searched` and `unsearched` the same with the pairs that `opencv-iib colmap` verifies, with and
-without its search for other views, `SIFT` COLMAP's own, and `normalized` OpenCV's SIFT at
-points of NormalizedDetector. All have the cameras that COLMAP infers, the pairs of the chain (each image with the twenty for
-which its codes vote), COLMAP's verification and its mapper; the largest component counts. With --relit every second image is
-darkened. With --other the images whose names fit no PATTERN become a map, with poses of the chain's reconstruction, and the
-others are looked for in it. Needs pycolmap. Work that is there is not done again.
+Methods:
+- `chain`: HessianDetector and UNIVERSAL;
+- `searched` and `unsearched`: the same, verified by `opencv-iib colmap`, with and without its search for other views;
+- `SIFT`: COLMAP's own;
+- `normalized`: OpenCV's SIFT at points of NormalizedDetector.
+
+All use the cameras that COLMAP infers, the pairs of the chain (each image with the twenty that its codes vote for), and COLMAP's mapper;
+the largest component counts. --relit darkens every second image. --other makes a map of the images whose names match no PATTERN, with poses
+of the chain's reconstruction, and localizes the others. Needs pycolmap. Finished work is kept.
 """
 import argparse
 import csv
@@ -98,7 +101,7 @@ def reconstruct(method, images, points, work):
 
 
 def poses(model):
-    """World from camera, and the median distance to what is seen, by name."""
+    """World from camera, and the median distance of the points seen, by name."""
     found = {}
     for image in map(model.image, model.reg_image_ids()):
         seen = np.array([model.point3D(p.point3D_id).xyz for p in image.get_observation_points2D()]).reshape(-1, 3)
@@ -112,9 +115,9 @@ def true_poses(file):
     return {name: pycolmap.Rigid3d(pycolmap.Rotation3d(np.array(v[3:], float)), np.array(v[:3], float)) for name, *v in rows}
 
 
-def told(found, truth):
-    """Errors of poses of `found` beside those of `truth`, after the similarity that most of them agree on: medians of centres in
-    per cent and of angles in degrees, and how many are close."""
+def pose_errors(found, truth):
+    """Errors of the poses `found` after the best similarity to `truth`: medians of centres in per cent and of angles in degrees, and how many
+    are close."""
     both = sorted(set(found) & set(truth))
     true, seen = np.array([truth[n].translation for n in both]), np.array([found[n][0].translation for n in both])
     depths = np.array([found[name][1] for name in both])
@@ -129,8 +132,8 @@ def told(found, truth):
 
 
 def find_others(images, other, model, points, work):
-    """What is said of the images of another light."""
-    asked = [(image.name, image.camera, image.cam_from_world().inverse()) for image in map(model.image, model.reg_image_ids())
+    """A sentence about the images in other light."""
+    queries = [(image.name, image.camera, image.cam_from_world().inverse()) for image in map(model.image, model.reg_image_ids())
              if image.name in other]
     depths = {name: depth for name, (_, depth) in poses(model).items()}
     for image in list(map(model.image, model.reg_image_ids())):
@@ -141,14 +144,14 @@ def find_others(images, other, model, points, work):
         model.write(work / 'rest')
         build(str(work / 'rest'), str(images), str(work / 'MAP'), points)
     localizer, errors = Localizer(work / 'MAP', points), []
-    for name, camera, truth in asked:
+    for name, camera, truth in queries:
         found = localizer.localize(cv2.imread(str(images / name)), camera).cam_from_world
         if found is not None:
             pose = pycolmap.Rigid3d(found[:3]).inverse()
             away = np.linalg.norm(pose.translation - truth.translation)
             errors.append((away / depths[name], np.degrees(pose.rotation.angle_to(truth.rotation))))
     moved, turned = np.array(errors).reshape(-1, 2).T
-    return (f'Of {len(other)} images of another light {len(asked)} are in the reconstruction, and {len(errors)} are found in a map of '
+    return (f'Of {len(other)} images in other light {len(queries)} are in the reconstruction, and {len(errors)} are found in a map of '
             f'the {model.num_reg_images()} others there: medians {100 * np.median(moved):.2f} % and {np.median(turned):.2f} degrees '
             f'from where it has them, {np.count_nonzero((moved < .05) & (turned < 5))} within 5 % and 5 degrees')
 
@@ -158,9 +161,9 @@ def main():
     parser.add_argument('scenes', type=Path, nargs='+', metavar='SCENE')
     parser.add_argument('--methods', default='chain,SIFT,normalized', help='the chain first (%(default)s)')
     parser.add_argument('--relit', action='store_true')
-    parser.add_argument('--other', help='names of the images of another light, patterns with commas between them')
+    parser.add_argument('--other', help='names of the images in other light: patterns, separated by commas')
     parser.add_argument('--points', type=int, default=4000)
-    parser.add_argument('--work', type=Path, default=Path('photographs'), help='folder for what is made (%(default)s)')
+    parser.add_argument('--work', type=Path, default=Path('photographs'), help='folder for the results (%(default)s)')
     arguments = parser.parse_args()
     pycolmap.logging.minloglevel = pycolmap.logging.WARNING.value
     pycolmap.set_random_seed(1)
@@ -178,14 +181,14 @@ def main():
             models[method], others = reconstruct(method, images, arguments.points, work)
             model, errors = models[method], [''] * 3
             if truth.exists():
-                errors = told({Path(name).stem: pose for name, pose in poses(model).items()}, true_poses(truth))
+                errors = pose_errors({Path(name).stem: pose for name, pose in poses(model).items()}, true_poses(truth))
             table.writerow([work.name, method, f'{model.num_reg_images()} of {len(list(images.iterdir()))}', ' '.join(map(str, others)), model.num_points3D(),
                             f'{model.compute_mean_track_length():.2f}', f'{model.compute_mean_reprojection_error():.2f}', *errors])
             sys.stdout.flush()
         if not truth.exists():
             for a, b in itertools.combinations(models, 2):
                 other = {name: pose for name, (pose, _) in poses(models[b]).items()}
-                table.writerow([work.name, f'{a} and {b}', '', '', '', '', '', *told(poses(models[a]), other)])
+                table.writerow([work.name, f'{a} and {b}', '', '', '', '', '', *pose_errors(poses(models[a]), other)])
         if arguments.other:
             other = {path.name for path in images.iterdir()
                      if any(fnmatch.fnmatch(path.name, pattern) for pattern in arguments.other.split(','))}

@@ -1,4 +1,4 @@
-"""Where was the second image taken, seen from the first? python poses.py [A B FOCAL_LENGTH_IN_PIXELS]"""
+"""Finds the pose of the second camera relative to the first: python poses.py [A B FOCAL_LENGTH_IN_PIXELS]"""
 import sys
 
 import cv2
@@ -15,20 +15,18 @@ else:
     a, b = scene.view('day', (0, 0)), scene.view('night', (.6, 0), -5)
 matrix = scene.camera(a)
 
-# %% Points and matches by the recommended chain, further matches that these lead to, and the places of the second points to a
-# fraction of a pixel.
+# %% Points and matches by the recommended chain, propagated to further matches, and refined to a fraction of a pixel.
 points_a, sizes_a, codes_a = opencv_iib.detect_and_describe(a, 4000)
 points_b, sizes_b, codes_b = opencv_iib.detect_and_describe(b, 4000)
 pairs, _ = opencv_iib.match(codes_a, codes_b)
 rows_a, rows_b = np.column_stack([points_a, sizes_a]), np.column_stack([points_b, sizes_b])
 found = opencv_iib.propagateMatches(a, rows_a, b, rows_b, pairs)
 
-# %% Where a pattern repeats, wrong matches lead to further ones, too: once more from those alone that agree with a first pose.
+# %% Wrong matches of a repeating pattern propagate too: propagate a second time, from the inliers of a first pose alone.
 first = opencv_iib.findRelativePose(found.points1[:len(pairs)], found.points2[:len(pairs)], matrix, matrix)
 again = opencv_iib.propagateMatches(a, rows_a, b, rows_b, pairs[first.inliers.ravel() > 0])
 
-# %% The pose that most matches agree with under one scale, since the less exact of two scales takes in more; two cameras could have two
-# matrices.
+# %% The pose with more inliers, at one scale, since a larger scale has more inliers. The matrices of two cameras may differ.
 
 
 def pose_of(tried, scale=0):
@@ -40,7 +38,7 @@ pose, matches = max(((pose_of(tried), tried) for tried in (found, again)),
 if not pose.found:
     sys.exit(pose.reason)
 
-# %% Two images do not tell how far the camera moved, but whereto, in the axes of the first camera: right, down, ahead.
+# %% The direction of the movement in the axes of the first camera: right, down, ahead. Its length cannot be found from two images.
 direction = (-pose.R.T @ pose.t).ravel()
 turn = np.degrees(cv2.Rodrigues(pose.R)[0].ravel())
 errors = np.degrees(np.sqrt(np.diag(pose.covariance)))

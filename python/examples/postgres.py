@@ -1,4 +1,4 @@
-"""Places in PostgreSQL: codes of images beside whatever else a database knows of them, and which image a new one shows.
+"""Codes of images in PostgreSQL, and a search for the place that a new image shows.
 
     import psycopg
     from postgres import Places
@@ -17,19 +17,19 @@ from typing import Any
 import numpy as np
 from psycopg import Connection, rows
 
-# The coarse levels of the default descriptor, 42 of its 170 bytes, which tell most of the distance.
+# The coarse levels of the default descriptor, 42 of its 170 bytes, have most of the information.
 _PREFIX_BITS = 336
 
 
 class Places:
-    """A table with a row a place, ``NAME`` (id, name), and one of their codes, ``NAME_codes`` (place, number, code).
+    """Two tables: a row a place, ``NAME`` (id, name), and a row a code, ``NAME_codes`` (place, number, code).
 
-    Codes are of the type ``bit(n)``, their first byte leftmost; a place's codes go when its row is deleted. Each call is
-    whole or nothing, and commits only if the connection commits by itself.
+    Codes are of the type ``bit(n)``, their first byte leftmost; they are deleted with their place. Each call is atomic, and commits only if
+    the connection commits by itself.
     """
 
     def __init__(self, connection: Connection[Any], name: str, code_bytes: int) -> None:
-        """Takes the tables, or makes them if they are missing. Names are of at most 40 small letters and underscores."""
+        """Opens the tables, or makes them. Names have at most 40 small letters and underscores."""
         if not re.fullmatch('[a-z_]{1,40}', name):
             raise ValueError(f'name is {name!r}: 1 to 40 of the letters a to z and _ are needed')
         self._connection, self._bytes = connection, code_bytes
@@ -45,7 +45,7 @@ class Places:
     def insert(self, name: str, codes: np.ndarray) -> None:
         """Adds a place with its codes, an N x bytes uint8 array.
 
-        :raises psycopg.errors.UniqueViolation: if a place of this name is there.
+        :raises psycopg.errors.UniqueViolation: if a place has this name.
         """
         bits = self._bits(codes)
         with self._transaction(), self._connection.cursor() as cursor:
@@ -55,11 +55,11 @@ class Places:
                     copy.write_row((place, number, code))
 
     def delete(self, name: str) -> None:
-        """Removes a place and its codes; nothing happens if there is none of this name."""
+        """Removes a place and its codes, if there is one of this name."""
         self._execute('DELETE FROM {places} WHERE name = %s', name)
 
     def create_index(self) -> None:
-        """Makes pgvector's HNSW index over the first 42 bytes of the codes; later places come into it too."""
+        """Makes pgvector's HNSW index over the first 42 bytes of the codes, also of later places."""
         with self._transaction():
             # Parallel builds overflow a buffer before pgvector 0.8.2 (CVE-2026-3172).
             self._execute('SET LOCAL max_parallel_maintenance_workers = 0')
@@ -71,26 +71,26 @@ class Places:
 
         Ties among codes go to the place that was inserted first, and so do ties among places.
 
-        :param candidates: 0: all codes are compared. With an index, up to 1000: so many codes of the nearest prefixes are
-            compared whole, and nearer ones may be missed.
-        :return: at most `count` names and votes, most votes first; only places that have any.
+        :param candidates: 0: compare all codes. With an index, 1 to 1000: compare so many codes with the nearest prefixes, which may miss nearer
+            ones.
+        :return: at most `count` names and votes, most votes first.
         """
         searched = '{codes}' if candidates == 0 else ('(SELECT place, code FROM {codes} ORDER BY {prefix} <~> query.{prefix} '
                                                       f'LIMIT {int(candidates)})')
         bits = self._bits(codes)
-        with self._connection.transaction(force_rollback=True):  # the settings are of this statement alone
+        with self._connection.transaction(force_rollback=True):  # so that the settings end with this statement
             if candidates:
                 self._execute(f'SET LOCAL hnsw.ef_search = {max(int(candidates), 40)}')
-                self._execute('SET LOCAL hnsw.iterative_scan = relaxed_order')  # goes on behind rows that were deleted
+                self._execute('SET LOCAL hnsw.iterative_scan = relaxed_order')  # continues after deleted rows
             return [(name, votes) for name, votes in self._execute(
                 'SELECT name, count(*) FROM unnest(%s::{code}[]) query(code) CROSS JOIN LATERAL '
                 f'(SELECT place FROM {searched} searched ORDER BY bit_count(searched.code # query.code), place LIMIT 1) nearest '
                 'JOIN {places} ON id = place GROUP BY id, name ORDER BY count(*) DESC, id LIMIT %s', bits, count)]
 
     def _transaction(self) -> Any:
-        """All or nothing, without a commit that the connection would not make."""
+        """A transaction that commits only if the connection commits by itself."""
         if not self._connection.autocommit:
-            self._execute('SELECT')  # begins the one that the next is a part of
+            self._execute('SELECT')  # begins an outer transaction
         return self._connection.transaction()
 
     def _bits(self, codes: np.ndarray) -> list[str]:

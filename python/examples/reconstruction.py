@@ -19,7 +19,7 @@ else:
     for k in range(9):
         cv2.imwrite(str(images / f'{k}.png'), scene.view(('day', 'night')[k % 2], (.25 * k - 1, .1 * (k % 3)), 1.5 * (k - 4)))
 
-# %% Points, codes, matches of all pairs, checked by geometry: in a database that COLMAP and pycolmap read. An interrupted run goes on.
+# %% Points, codes, and verified matches of all pairs, in a database for COLMAP and pycolmap. An interrupted run continues.
 build_database(str(images), str(out / 'database.db'), options)
 
 # %% Poses and points by pycolmap. The largest of the models is kept.

@@ -1,4 +1,4 @@
-"""A robot that finds itself by night in a map that was made by day: python robot_at_night.py"""
+"""Localizes a robot by night in a map that was made by day: python robot_at_night.py"""
 import tempfile
 from pathlib import Path
 
@@ -10,7 +10,7 @@ import scene
 from opencv_iib.colmap import FeatureOptions, Options, build_database
 from opencv_iib.localization import Camera, Localizer, build
 
-# %% By day: images of a drawn street along a way, and where they were taken, in metres: right and down.
+# %% By day: images of a drawn street, and their places in metres, right and down.
 folder = Path(tempfile.mkdtemp())
 images = folder / 'images'
 height, width = scene.PICTURES['day'].shape[:2]
@@ -20,7 +20,7 @@ images.mkdir()
 for name, place in way.items():
     cv2.imwrite(str(images / name), scene.view('day', place))
 
-# %% Poses by pycolmap, from our matches, in a unit of its own: what it is in metres, the known places tell.
+# %% Poses by pycolmap, from our matches, and its unit in metres, from the known places.
 text = ','.join(map(str, (camera.model, width, height, *camera.params)))
 build_database(images, folder / 'database.db', Options(FeatureOptions(points=1500), camera=text, verify='magsac'))
 models = pycolmap.incremental_mapping(folder / 'database.db', images, folder, pycolmap.IncrementalPipelineOptions(random_seed=1))
@@ -29,10 +29,10 @@ centres = np.array([[*image.projection_center(), 1] for image in model.images.va
 to_metres = np.linalg.lstsq(centres, np.array([way[image.name] for image in model.images.values()]), rcond=None)[0]
 unit = np.linalg.norm(to_metres[:3], axis=0).mean()
 
-# %% A map of it: points with codes that the night does not change.
+# %% A map with codes that the night does not change.
 print(build(folder / str(number), images, folder / 'map'))
 
-# %% By night: each image is first looked for where the robot was last.
+# %% By night: each image is first searched near the last one.
 localizer, last, errors, places = Localizer(folder / 'map'), None, [], []
 for k in range(20):
     at = (.09 * k - .9, .05)
@@ -45,12 +45,12 @@ for k in range(20):
     errors.append(np.linalg.norm(places[-1] - at))
     sigma = unit * np.sqrt(np.trace(location.covariance[:3, :3]))
     if k % 5 == 0:
-        print(f'{k}: {location.inliers} matches agree, off by {100 * errors[-1]:.1f} cm, told +-{100 * sigma:.1f} cm')
+        print(f'{k}: {location.inliers} matches agree, off by {100 * errors[-1]:.1f} cm, estimated +-{100 * sigma:.1f} cm')
 
-# %% How well.
+# %% Errors.
 print(f'{len(errors)} of 20 places are found, half of them within {100 * np.median(errors):.1f} cm')
 
-# %% What the robot saw last, the map's points in it, and its way: circles of five centimetres about its places, and a line that is the truth.
+# %% The last image with the map's points, and the path: found places as circles of five centimetres, the true path as a line.
 picture = np.vstack([scene.view('night', at), np.full((120, width, 3), 40, np.uint8)])
 for x, y in location.pixels:
     cv2.circle(picture, (round(x), round(y)), 3, (80, 220, 80), 1, cv2.LINE_AA)

@@ -1,4 +1,4 @@
-"""Two flights over one place, in the morning and in the evening, in one reconstruction: python two_flights.py [PHOTOS OUT], a folder a flight"""
+"""Reconstructs two flights over one place, in the morning and in the evening, together: python two_flights.py [PHOTOS OUT], a folder a flight"""
 import sys
 import tempfile
 from pathlib import Path
@@ -10,7 +10,7 @@ import pycolmap
 import scene
 from opencv_iib.colmap import FeatureOptions, Options, build_database
 
-# %% The morning's photographs: yours, or seven of a drawn scene by day. The camera is known, in COLMAP's words.
+# %% The morning's photographs: yours, or seven of a drawn scene by day. The camera is known.
 photos, out = map(Path, sys.argv[1:3] if len(sys.argv) > 2 else [tempfile.mkdtemp(), tempfile.mkdtemp()])
 height, width = scene.PICTURES['day'].shape[:2]
 camera = f'PINHOLE,{width},{height},{scene.FOCAL},{scene.FOCAL},{width / 2},{height / 2}'
@@ -30,20 +30,20 @@ if len(sys.argv) <= 2:
 counts = build_database(photos, out / 'database.db', options)
 print(f'morning: {counts["images"]} images, {counts["verified pairs"]} pairs')
 
-# %% In the evening: the same call again adds the new images and their pairs; what the morning's are and have stays as it is.
+# %% In the evening: the same call adds the new images and their pairs, and keeps those of the morning.
 if len(sys.argv) <= 2:
     fly('evening', 'night', .15)
 counts = build_database(photos, out / 'database.db', options)
 print(f'and evening: {counts["images"]} images, {counts["verified pairs"]} pairs')
 
-# %% One model of both, by pycolmap: how many images of each flight it has, and how many of its points both flights saw.
+# %% One model of both by pycolmap: its images of each flight, and the points that both flights saw.
 models = pycolmap.incremental_mapping(out / 'database.db', photos, out, pycolmap.IncrementalPipelineOptions(random_seed=1))
 model = max(models.values(), key=lambda m: m.num_reg_images())
 flights = {number: image.name.split('/')[0] for number, image in model.images.items()}
 seen = [{flights[element.image_id] for element in point.track.elements} for point in model.points3D.values()]
 print(f'{model.num_reg_images()} images in one model; of {len(seen)} points {sum(len(each) > 1 for each in seen)} are seen by both flights')
 
-# %% The model from above: white points are seen by both flights, and the cameras of the morning are yellow, of the evening blue.
+# %% The model from above: points of both flights are white, cameras of the morning yellow, of the evening blue.
 picture = np.full((480, 640, 3), 40, np.uint8)
 centres = np.array([image.projection_center() for image in model.images.values()])
 points = np.array([point.xyz for point in model.points3D.values()])

@@ -1,4 +1,4 @@
-"""A year of a webcam, laid onto one day of it: python webcam_year.py [REFERENCE FOLDER]"""
+"""Aligns a year of a webcam with one day of it: python webcam_year.py [REFERENCE FOLDER]"""
 import sys
 import tempfile
 from pathlib import Path
@@ -25,19 +25,18 @@ else:
             cv2.imwrite(str(folder / f'{month + 1}-{hour}.jpg'), seen)
     reference = folder / '6-8.jpg'
 
-# %% All of them as the reference's camera would see them. The folder may grow: the same call does what is new. It makes a page, too:
-# index.html, with a slider for each.
+# %% All pictures as the reference's camera would see them, and a page, index.html, with a slider for each. The same call adds new pictures.
 done = align(reference, [folder], 'aligned', crop=True)
 found = [each for each in done if each.file]
 print(f'{len(found)} of {len(done)} pictures are aligned')
 
-# %% How far the wind moved the camera: where the pictures' centres lie in the reference.
+# %% How far the wind moved the camera, at the pictures' centres.
 for each in found[:6]:
     x, y = np.array(each.size) / 2
     at = np.reshape(each.transform, (3, 3)) @ [x, y, 1]
     print(f'{Path(each.name).name}: {np.hypot(*(at[:2] / at[2] - (x, y))):.1f} pixels, the corners known to {max(each.errors):.2f}')
 
-# %% The year in one picture: what does not change stays sharp in the median, what comes and goes is gone. Beside it, as the camera saw it.
+# %% The year in one picture, its median, in which only moving things vanish; on the left the median before alignment.
 raw = [cv2.resize(scene.read(each.name), (480, 360)) for each in found]
 laid = [cv2.resize(scene.read(Path('aligned', each.file)), (480, 360)) for each in found]
 medians = [np.median(pictures, axis=0).astype(np.uint8) for pictures in (raw, laid)]

@@ -16,13 +16,12 @@ inside is its own: nothing but arrays and plain values passes between it and cv2
 from opencv_iib import _core, _methods
 from opencv_iib._core import error
 from opencv_iib._arguments import integer
-from opencv_iib._types import DMatch, KeyPoint
 from opencv_iib.descriptor import IIB, IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector, NormalizedDetector
 from opencv_iib.enums import AlignmentModel, Border, Channel, Mapping, Mode, Orientation, Preset
 from opencv_iib.functions import Features, Matches, detect_and_describe, match
 from opencv_iib.geometry import Alignment, ImageAligner, RelativePose, alignImages, confidenceLimit, findRelativePose, logFalseAlarms
-from opencv_iib.keypoints import array_to_keypoints, keypoints_to_array
+from opencv_iib.keypoints import DMatch, KeyPoint, array_to_keypoints, keypoints_to_array
 from opencv_iib.mapped_index import MappedIndex
 from opencv_iib.matcher import HierarchicalMatcher
 from opencv_iib.refinement import PropagatedMatches, RefinedMatches, propagateMatches, refineMatches
@@ -32,12 +31,13 @@ from opencv_iib.views import ViewMatcher, ViewMatches, matchViews
 __all__ = ['Alignment', 'AlignmentModel', 'Border', 'Channel', 'DMatch', 'Features', 'HessianDetector',
            'HierarchicalMatcher', 'IIB', 'IIBDescriptorExtractor', 'ImageAligner', 'KeyPoint', 'MappedIndex', 'Mapping', 'Matches',
            'Mode', 'NormalizedDetector', 'OPENCV_VERSION', 'Orientation', 'Preset', 'PropagatedMatches',
-           'RefinedMatches', 'RelativePose', 'ViewMatcher', 'ViewMatches', 'alignImages', 'array_to_keypoints', 'confidenceLimit', 'detect_and_describe', 'error', 'estimateRotation',
+           'RefinedMatches', 'RelativePose', 'ViewMatcher', 'ViewMatches', 'alignImages', 'array_to_keypoints', 'confidenceLimit',
+           'detect_and_describe', 'error', 'estimateRotation',
            'findRelativePose', 'getNumThreads', 'keypoints_to_array', 'logFalseAlarms', 'match', 'matchRotated', 'matchViews',
            'propagateMatches', 'refineMatches', 'setNumThreads']
 
 __version__: str = _core.VERSION
-#: Of the OpenCV inside.
+#: The version of the OpenCV inside.
 OPENCV_VERSION: str = _core.OPENCV_VERSION
 
 

@@ -1,4 +1,4 @@
-"""Plain values in calls, checked here, so that a mistake is told by its name and not by C++ types; modules that may be missing."""
+"""Checks arguments, so that errors name them and not types of C++, and imports optional modules."""
 from __future__ import annotations
 
 import importlib
@@ -11,23 +11,23 @@ Path = Union[str, os.PathLike[str]]
 
 
 class InvalidOption(ValueError):
-    """A value that an option cannot have: commands end with status 2."""
+    """An invalid value of an option: commands end with status 2."""
 
 
 class MissingFile(InvalidOption, FileNotFoundError):
-    """An option names a file that is not there, or a folder."""
+    """An option names a missing file or folder."""
 
 
 class TakenFile(InvalidOption, FileExistsError):
-    """What would be written is read, or written twice."""
+    """An output is an input too, or another output."""
 
 
 class UnusableName(InvalidOption, OSError):
-    """An option names what cannot be read or written, whatever its rights, such as a folder in place of a file."""
+    """An option names something that can never be read or written, such as a folder instead of a file."""
 
 
 def integer(value: Any, name: str, bits: int = 32) -> int:
-    """:raises TypeError: if it is no integer. :raises ValueError: if it has more than so many bits."""
+    """:raises TypeError: if it is no integer. :raises ValueError: if it needs more bits."""
     try:
         whole = operator.index(value)
     except TypeError:
@@ -38,14 +38,13 @@ def integer(value: Any, name: str, bits: int = 32) -> int:
 
 
 def sequence(values: Iterable[Any], name: str, what: str) -> list[Any]:
-    """:raises TypeError: for what is none, and for a text, which is one of letters."""
+    """:raises TypeError: for a non-sequence or a text."""
     if isinstance(values, (str, bytes, os.PathLike)) or not hasattr(values, '__iter__'):
         raise TypeError(f'{name}: a sequence of {what} is needed, not {values!r}')
     return list(values)
 
 
 def integers(values: Iterable[Any], name: str, bits: int = 32) -> list[int]:
-    """A list of them."""
     return [integer(value, name, bits) for value in sequence(values, name, 'integers')]
 
 
@@ -56,23 +55,22 @@ def number(value: Any, name: str) -> float:
     return float(value)
 
 
-MAX_COUNT = 1 << 30  # what the int of a detector holds
+MAX_COUNT = 1 << 30  # fits in the int of a detector
 
 
 def check_choice(value: Any, name: str, known: Iterable[str]) -> None:
-    """:raises InvalidOption: for a value that is none of these."""
     if value not in known:
         raise InvalidOption(f'no {name} {value}: there are {", ".join(known)}')
 
 
 def check_count(value: Any, name: str, most: int = MAX_COUNT) -> None:
-    """:raises InvalidOption: for less than 1, or more than this."""
+    """:raises InvalidOption: for less than 1, or more than `most`."""
     if not 1 <= integer(value, name, 64) <= most:
         raise InvalidOption(f'{name} is {value}: it must be 1 to {most}')
 
 
 def import_module(name: str, what: str) -> Any:
-    """:raises ImportError: saying what it is needed for, and what to install."""
+    """:param what: what the module is needed for, and what to install, for the ImportError."""
     try:
         return importlib.import_module(name)
     except ImportError as e:

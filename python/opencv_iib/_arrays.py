@@ -1,4 +1,4 @@
-"""From what users have to what the extension takes: C-contiguous arrays of native byte order."""
+"""Converts arguments to arrays for the extension: C-contiguous, of native byte order."""
 from __future__ import annotations
 
 import os
@@ -11,15 +11,12 @@ from opencv_iib import _core
 
 #: An array, or a sequence of them.
 ArrayOrArrays = Union[ArrayLike, Sequence[ArrayLike]]
-#: What OpenCV's classes take in place of one image.
+#: Several images.
 Images = Union[list[NDArray[Any]], tuple[NDArray[Any], ...]]
 
 
 def as_array(value: Any, what: str) -> np.ndarray:
-    """`value` as a C-contiguous array of native byte order; a copy only where it is not one.
-
-    :raises TypeError: naming `what`, for what is no array of numbers.
-    """
+    """`value` as a C-contiguous array of native byte order, copied only if needed. :raises TypeError: naming `what`, if it is no array of numbers."""
     try:
         array = np.asarray(value)
         if array.dtype == object and hasattr(value, '__dlpack__'):
@@ -36,10 +33,7 @@ def as_array(value: Any, what: str) -> np.ndarray:
 
 
 def as_matrix(value: Any, what: str) -> np.ndarray:
-    """As as_array, of 2 dimensions, or of 3 with the channels last.
-
-    :raises opencv_iib.error: naming `what`, for what OpenCV's matrices cannot hold.
-    """
+    """as_array of 2 dimensions, or of 3 with the channels last. :raises opencv_iib.error: naming `what`, if OpenCV's matrices cannot hold it."""
     array = as_array(value, what)
     if array.ndim > 3 or (array.ndim < 2 and array.size):
         raise _core.error(f'{what}: an array of 2 or 3 dimensions is needed, not {array.ndim}')
@@ -72,15 +66,12 @@ def as_image(value: ArrayLike) -> np.ndarray:
 
 
 def are_images(value: Any) -> bool:
-    """Whether it is a list of images, and not one."""
+    """Whether it is a list of images, and not one image."""
     return isinstance(value, (list, tuple)) and any(getattr(each, 'ndim', 0) > 1 for each in value)
 
 
 def with_images(images: Images, others: Sequence[Any], what: str) -> Iterable[tuple[Any, Any]]:
-    """Each image with its own of the others.
-
-    :raises opencv_iib.error: if there are more or fewer, naming `what`.
-    """
+    """Pairs of images and others. :raises opencv_iib.error: naming `what`, if their numbers differ."""
     count = len(others) if isinstance(others, (Sequence, np.ndarray)) else others
     if len(images) != count:
         raise _core.error(f'{len(images)} images, but {what} of {count}')
@@ -88,15 +79,12 @@ def with_images(images: Images, others: Sequence[Any], what: str) -> Iterable[tu
 
 
 def as_mask(value: Optional[ArrayLike]) -> np.ndarray:
-    """Of an image; an empty one for None."""
+    """The mask of an image; an empty one for None."""
     return np.empty((0, 0), np.uint8) if value is None else as_matrix(value, 'the mask')
 
 
 def as_codes(value: ArrayLike, what: str) -> np.ndarray:
-    """Rows of bytes.
-
-    :raises opencv_iib.error: for other numbers, such as SIFT's descriptors.
-    """
+    """Rows of bytes. :raises opencv_iib.error: for other numbers, such as SIFT's descriptors."""
     codes = as_matrix(value, what)
     if codes.size and codes.dtype not in (np.uint8, bool):
         raise _core.error(f'{what}: binary codes are uint8, not {codes.dtype}; Hamming distances of other numbers mean nothing')

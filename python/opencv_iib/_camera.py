@@ -12,28 +12,22 @@ from opencv_iib._arrays import as_array
 
 
 class Camera(_core.Camera):
-    """A camera as COLMAP describes it, of the attributes ``model``, ``width``, ``height`` and ``params``.
+    """A camera as COLMAP describes it, with the attributes ``model``, ``width``, ``height`` and ``params``.
 
-    ``Camera.parse('PINHOLE,640,480,500,500,320,240')`` makes one too. The centre of the first pixel is (0, 0), but in `params`
-    (.5, .5), as COLMAP has it.
-    """
+    ``Camera.parse('PINHOLE,640,480,500,500,320,240')`` makes one too. The centre of the first pixel is (0, 0), but (.5, .5) in `params`,
+    as in COLMAP."""
 
     def __init__(self, model: str, width: int, height: int, params: Iterable[float]) -> None:
         """Creates a camera.
-
-        :param model: COLMAP's name of it, in any case.
-        :param params: COLMAP's, in its order.
-        :raises opencv_iib.error: for an unknown model or wrong parameters.
-        """
+        :param model: COLMAP's name of the model, in any case.
+        :param params: COLMAP's parameters, in its order.
+        :raises opencv_iib.error: for an unknown model or wrong parameters."""
         values = [str(model).upper(), integer(width, 'width'), integer(height, 'height'), *(number(value, 'params') for value in params)]
         super().__init__(_core.Camera.parse(','.join(map(str, values))))
 
     @classmethod
     def parse(cls, text: str) -> Camera:
-        """From ``'MODEL,WIDTH,HEIGHT,PARAMS'``.
-
-        :raises opencv_iib.error: as for the class itself.
-        """
+        """From ``'MODEL,WIDTH,HEIGHT,PARAMS'``. :raises opencv_iib.error: as for the class itself."""
         if not isinstance(text, str):
             raise TypeError(f"camera: a text 'MODEL,WIDTH,HEIGHT,PARAMS' is needed, not {text!r}")
         model, comma, rest = text.partition(',')
@@ -44,7 +38,7 @@ class Camera(_core.Camera):
         return cls(core.model, core.width, core.height, core.params)
 
     def project(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Pixels, N x 2, of points in the camera's axes (x right, y down, z ahead), N x 3; NaN for those that it does not see."""
+        """Pixels, N x 2, of points in the camera's axes (x right, y down, z ahead), N x 3; NaN for points that it does not see."""
         return super().project(as_rows_of(points, 3, 'points'))
 
     def undistorted(self, pixels: ArrayLike) -> NDArray[np.float64]:
@@ -58,10 +52,8 @@ class Camera(_core.Camera):
 
     def upright(self, orientation: int) -> Camera:
         """Of its images, turned upright as EXIF's orientation asks.
-
         :param orientation: 1, 3, 6 or 8.
-        :raises opencv_iib.error: for another one: no camera sees a mirrored image.
-        """
+        :raises opencv_iib.error: for another one: no camera sees a mirrored image."""
         return Camera._of(super().upright(integer(orientation, 'orientation')))
 
     def _values(self) -> tuple[str, int, int, tuple[float, ...]]:
@@ -84,10 +76,7 @@ AnyCamera = Union[_core.Camera, str, Any]
 
 
 def as_camera(camera: AnyCamera) -> Camera:
-    """A Camera, the text of one, or an object like pycolmap.Camera, as Camera.
-
-    :raises opencv_iib.error: for an unknown model or wrong parameters.
-    """
+    """A Camera, the text of one, or an object like pycolmap.Camera, as Camera. :raises opencv_iib.error: for an unknown model or wrong parameters."""
     if isinstance(camera, _core.Camera):
         return camera if isinstance(camera, Camera) else Camera._of(camera)
     if isinstance(camera, str) or not hasattr(camera, 'model_name'):
@@ -96,10 +85,7 @@ def as_camera(camera: AnyCamera) -> Camera:
 
 
 def as_rows_of(values: ArrayLike, columns: int, what: str) -> NDArray[np.float64]:
-    """Rows of so many columns, float64.
-
-    :raises ValueError: for another shape.
-    """
+    """Rows of so many columns, float64. :raises ValueError: for another shape."""
     rows = as_array(values, what)
     if rows.size and rows.shape[1:] != (columns,):
         raise ValueError(f'{what}: an array of N x {columns} is needed, not of {" x ".join(map(str, rows.shape))}')

@@ -1,4 +1,4 @@
-"""Copies and pickles of objects of the extension."""
+"""Copies and pickles of objects of the extension, and of the detectors in them."""
 from __future__ import annotations
 
 import copy
@@ -11,60 +11,57 @@ T = TypeVar('T')
 
 
 def around(cls: type[T], core: Any) -> T:
-    """A new object of a class of this package, of what an object of the extension holds."""
+    """An object of a class of this package that shares the content of an object of the extension."""
     made = cls.__new__(cls)
     type(core).__setstate__(made, core)
     return made
 
 
 class MissingDetector:
-    """Stands for a detector that could not be pickled with the object that used it."""
+    """Replaces a detector that could not be pickled with the object that used it."""
 
     def __init__(self, name: str) -> None:
         self.name = name
 
     def getDefaultName(self) -> str:
-        """The name of the one that is missing."""
         return self.name
 
     def detect(self, image: Any, mask: Any = None) -> Any:
-        """Raises: there is none."""
         raise RuntimeError(f'the detector {self.name} was not pickled with the object that used it: set it again')
 
 
-class _Kept:
-    """A detector in the state of an object: one of cv2 cannot be copied, nor pickled, and describing needs none."""
+class _Detector:
+    """A detector in an object's state. Those of cv2 can neither be copied nor pickled: copies share them, pickles lose them."""
 
     def __init__(self, detector: Any) -> None:
         self.detector = detector
 
-    def __deepcopy__(self, memo: Any) -> _Kept:
+    def __deepcopy__(self, memo: Any) -> _Detector:
         with suppress(TypeError):
-            return _Kept(copy.deepcopy(self.detector, memo))
+            return _Detector(copy.deepcopy(self.detector, memo))
         return self
 
     def __reduce__(self) -> Any:
         known = self.detector is None or isinstance(self.detector, _core.Detector)
-        return _Kept, (self.detector if known else MissingDetector(detector_name(self.detector)),)
+        return _Detector, (self.detector if known else MissingDetector(detector_name(self.detector)),)
 
 
 def detector_name(detector: Any) -> str:
-    """Its getDefaultName(), or its class's name."""
+    """A detector's getDefaultName(), or the name of its class."""
     name = getattr(detector, 'getDefaultName', None)
     return str(name()) if callable(name) else type(detector).__name__
 
 
 def copied(cls: type[T]) -> type[T]:
-    """Copies and pickles of a class have the parameters of the object inside, and the attributes that a subclass has added.
+    """Gives a class copies and pickles, which have its `_parameters()` and the attributes that a subclass has added.
 
-    Of `_parameters()`, `_restored()` makes an equal object of the extension.
-    """
+    Its `_restored(parameters)` makes an equal object of the extension."""
     def __getstate__(self: Any) -> dict[str, Any]:
-        attributes = {name: _Kept(value) if name == '_detector' else value for name, value in vars(self).items()}
+        attributes = {name: _Detector(value) if name == '_detector' else value for name, value in vars(self).items()}
         return {**attributes, '_core': self._parameters()}
 
     def __setstate__(self: Any, state: dict[str, Any]) -> None:
-        vars(self).update({name: value.detector if isinstance(value, _Kept) else value for name, value in state.items() if name != '_core'})
+        vars(self).update({name: value.detector if isinstance(value, _Detector) else value for name, value in state.items() if name != '_core'})
         core = self._restored(state['_core'])
         type(core).__setstate__(self, core)
 

@@ -1,4 +1,4 @@
-"""What the heads of image files say: EXIF data, segments of JPEG."""
+"""What image files say about themselves: EXIF data, and segments of JPEG."""
 from __future__ import annotations
 
 import contextlib
@@ -13,13 +13,13 @@ from opencv_iib._files import read_bytes
 PHOTOMETRIC, SAMPLES, ORIENTATION = 0x0106, 0x0115, 0x0112
 EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x8769, 0x920A, 0xA405, 0xA20E, 0xA210
 MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolution
-NOWHERE = 2**32 - 1  #: of a directory: behind the end of any file
 GPS_IFD, LATITUDE_REF, LATITUDE, LONGITUDE_REF, LONGITUDE, ALTITUDE_REF, ALTITUDE = 0x8825, 1, 2, 3, 4, 5, 6
 EARTH = 6371000  # metres, the radius
-BYTE, ASCII, SHORT, LONG, RATIONAL, DOUBLE, LONG8, IFD8 = 1, 2, 3, 4, 5, 12, 16, 18  # TIFF's types, the last two of files of 64 bits
+ASCII, SHORT, RATIONAL, DOUBLE = 2, 3, 5, 12  # TIFF's types
+FORMS = {1: 'B', ASCII: 's', SHORT: 'H', 4: 'I', RATIONAL: 'II', DOUBLE: 'd', 16: 'Q', 18: 'Q'}  #: of a value, by the type; as in struct
 MIRRORED = 2, 4, 5, 7  #: EXIF's orientations of images that are stored mirrored
 START_OF_SCAN, APP1 = 0xda, 0xe1  # JPEG's markers
-TIFF = (b'II*\0', b'MM\0*', b'II+\0', b'MM\0+')  # how files begin; the last two have places of 64 bits
+TIFF = (b'II*\0', b'MM\0*', b'II+\0', b'MM\0+')  #: first bytes of TIFF files; the last two have offsets of 64 bits
 
 
 def _jpeg_segments(data: bytes) -> Iterator[tuple[int, int, int]]:
@@ -27,10 +27,10 @@ def _jpeg_segments(data: bytes) -> Iterator[tuple[int, int, int]]:
     at = 2 if data.startswith(b'\xff\xd8') else len(data)
     while data[at:at + 1] == b'\xff' and at + 4 <= len(data):
         marker = data[at + 1]
-        end = at + 2 + int.from_bytes(data[at + 2:at + 4], 'big')
-        if marker == 0xff:  # a byte that fills
+        if marker == 0xff:  # padding
             at += 1
             continue
+        end = at + 2 + int.from_bytes(data[at + 2:at + 4], 'big')
         yield marker, at + 4, end
         if marker == START_OF_SCAN:
             return
@@ -38,12 +38,12 @@ def _jpeg_segments(data: bytes) -> Iterator[tuple[int, int, int]]:
 
 
 def is_cut_off(data: bytes) -> bool:
-    """Whether the file is a JPEG without its end. A thumbnail within a segment has an end of its own."""
+    """Whether the file is a JPEG without its end. Thumbnails in segments have ends of their own."""
     return any(marker == START_OF_SCAN and data.find(b'\xff\xd9', begin) < 0 for marker, begin, _ in _jpeg_segments(data))
 
 
 def _exif(data: bytes) -> bytes:
-    """The TIFF structure of a file's EXIF data, in JPEG, PNG, WebP or TIFF; empty without any."""
+    """The TIFF structure of the EXIF data of a JPEG, PNG, WebP or TIFF file; empty without any."""
     if data[:4] in TIFF:
         return data
     for marker, begin, end in _jpeg_segments(data):
@@ -61,96 +61,70 @@ def _exif(data: bytes) -> bytes:
     return b''
 
 
-def _order(tiff: bytes) -> str:
-    """Of its bytes, as struct names it."""
-    return '<' if tiff[:1] == b'I' else '>'
+def _directory(tiff: bytes, pointer: int = 0) -> dict[int, Any]:
+    """The entries of the first directory of a TIFF, or of the directory that its entry `pointer` leads to, by their tags: a list of finite
+    numbers, or a text. Empty for a damaged directory."""
+    order, (counted, word, room) = '<' if tiff[:1] == b'I' else '>', ('Q', 'Q', 8) if tiff[:4] in TIFF[2:] else ('H', 'I', 4)
 
+    def unpacked(form: str, at: int) -> tuple[Any, ...]:
+        return struct.unpack_from(order + form, tiff, at if 0 <= at < len(tiff) else len(tiff))  # which has no integers without limit
 
-def _directory(tiff: bytes, at: int) -> dict[int, Any]:
-    """By tag, the finite numbers or the text of each entry of a TIFF directory.
-
-    :raises struct.error: for one that is cut off.
-    """
-    order = _order(tiff)
-    counted, word, room = ('Q', 'Q', 8) if tiff[:4] in TIFF[2:] else ('H', 'I', 4)
-    count, first = _unpacked(order + counted, tiff, at)[0], at + struct.calcsize(order + counted)
-    end = first + (4 + 2 * room) * count
     found: dict[int, Any] = {}
-    for entry in range(first, end, 4 + 2 * room):
-        tag, kind, length = struct.unpack_from(order + 'HH' + word, tiff, entry)
-        form = {BYTE: f'{length}B', ASCII: f'{length}s', SHORT: f'{length}H', LONG: f'{length}I', RATIONAL: f'{2 * length}I', DOUBLE: f'{length}d',
-                LONG8: f'{length}Q', IFD8: f'{length}Q'}.get(kind)
-        with contextlib.suppress(struct.error):  # of an entry that leads nowhere
-            if form is not None and length:
-                size = struct.calcsize(order + form)
-                place, = (entry + 4 + room,) if size <= room else struct.unpack_from(order + word, tiff, entry + 4 + room)
-                values: Any = _unpacked(order + form, tiff, place)
+    try:
+        at = int(_number(_directory(tiff), pointer, -1)) if pointer else unpacked(word, room)[0]
+        count, first = unpacked(counted, at)[0], at + struct.calcsize(order + counted)
+        for entry in range(first, first + (4 + 2 * room) * count, 4 + 2 * room):
+            tag, kind, length = struct.unpack_from(order + 'HH' + word, tiff, entry)
+            with contextlib.suppress(struct.error, KeyError):  # a value beyond the file, or of another type
+                form = f'{length * len(FORMS[kind])}{FORMS[kind][0]}'
+                values: Any = unpacked(form, entry + 4 + room if struct.calcsize(order + form) <= room else unpacked(word, entry + 4 + room)[0])
                 if kind == RATIONAL:
                     values = [above / below if below else 0 for above, below in zip(values[::2], values[1::2])]
-                if kind != DOUBLE or np.isfinite(values).all():
+                if length and np.isfinite(values if kind == DOUBLE else 0).all():
                     found[tag] = values[0].split(b'\0')[0].decode('latin-1').strip() if kind == ASCII else values
+    except struct.error:
+        return {}
     return found
 
 
-def _unpacked(form: str, tiff: bytes, place: int) -> tuple[Any, ...]:
-    """:raises struct.error: also for a place that no computer has."""
-    return struct.unpack_from(form, tiff, place if 0 <= place < len(tiff) else len(tiff))
-
-
-def _first_directory(tiff: bytes) -> dict[int, Any]:
-    """:raises struct.error: if there is none."""
-    word, at = ('Q', 8) if tiff[:4] in TIFF[2:] else ('I', 4)
-    return _directory(tiff, struct.unpack_from(_order(tiff) + word, tiff, at)[0])
-
-
 def _number(entries: dict[int, Any], tag: int, default: float) -> float:
-    """The first one of an entry; the default where there is none, or a text that some program wrote there."""
+    """The first number of an entry; the default without one, and for a text."""
     values = entries.get(tag, '')
     return default if isinstance(values, str) else values[0]
 
 
 def tiff_channels(data: bytes) -> int:
-    """Of a TIFF's first page; 0 if nothing says what they mean."""
-    with contextlib.suppress(struct.error):
-        entries = _first_directory(data)
-        return int(_number(entries, SAMPLES, 1)) if PHOTOMETRIC in entries else 0
-    return 0
+    """The channels of a TIFF's first page; 0 if their meaning is not known."""
+    entries = _directory(data)
+    return int(_number(entries, SAMPLES, 1)) if PHOTOMETRIC in entries else 0
 
 
 def exif_orientation(data: bytes) -> int:
-    """How a file's EXIF data say that the image is stored, 1 (upright) to 8; 1 if they tell nothing."""
-    try:
-        told = int(_number(_first_directory(_exif(data)), ORIENTATION, 1))
-    except struct.error:
-        return 1
-    return told if 1 <= told <= 8 else 1
+    """EXIF's orientation of an image file, 1 (upright) to 8; 1 without one."""
+    value = int(_number(_directory(_exif(data)), ORIENTATION, 1))
+    return value if 1 <= value <= 8 else 1
 
 
 def exif_focal_length(data: bytes, width: int, height: int) -> Optional[float]:
-    """Focal length in pixels by a file's EXIF data, by COLMAP's rules; None if they tell none."""
-    tiff = _exif(data)
-    try:
-        entries = _directory(tiff, int(_number(_first_directory(tiff), EXIF_IFD, NOWHERE)))
-    except struct.error:
-        return None
-    exif: dict[int, float] = {tag: values[0] for tag, values in entries.items() if not isinstance(values, str)}
-    pixels = exif.get(FOCAL_LENGTH_35MM, 0) / 35.0 * max(width, height)
+    """Focal length in pixels by an image file's EXIF data and COLMAP's rules; None without one."""
+    entries = _directory(_exif(data), EXIF_IFD)
+    pixels = _number(entries, FOCAL_LENGTH_35MM, 0) / 35.0 * max(width, height)
     if not pixels > 0:
-        pixels = exif.get(FOCAL_LENGTH, 0) * exif.get(PLANE_X_RESOLUTION, 0) / MILLIMETRES.get(int(exif.get(PLANE_UNIT, 2)), 25.4)
+        unit = MILLIMETRES.get(int(_number(entries, PLANE_UNIT, 2)), 25.4)
+        pixels = _number(entries, FOCAL_LENGTH, 0) * _number(entries, PLANE_X_RESOLUTION, 0) / unit
     return pixels if 0 < pixels < 1e9 else None
 
 
 def gps_place(path: str) -> Optional[np.ndarray]:
-    """Where a file's EXIF data say that it was taken, metres: on the Earth's sphere from its centre, and the height (NaN where they tell none);
-    None if they do not, or say 0, 0, which cameras without a signal write."""
+    """The place of an image file's EXIF data in metres: on the Earth's sphere from its centre, and the height (NaN without one). None without a
+    place, and for 0, 0, which cameras without a signal write."""
     try:
-        tiff = _exif(read_bytes(path))
-        gps = _directory(tiff, int(_number(_first_directory(tiff), GPS_IFD, NOWHERE)))
+        gps = _directory(_exif(read_bytes(path)), GPS_IFD)
         latitude, longitude = (np.radians(np.dot(gps[tag], (1, 1 / 60, 1 / 3600)) * (-1 if gps.get(ref) in ('S', 'W') else 1))
                                for tag, ref in ((LATITUDE, LATITUDE_REF), (LONGITUDE, LONGITUDE_REF)))
-        height = _number(gps, ALTITUDE, np.nan) * (-1 if _number(gps, ALTITUDE_REF, 0) == 1 else 1)
-    except (struct.error, KeyError, TypeError, ValueError, OSError):
+    except (KeyError, TypeError, ValueError, OSError):
         return None
+    height = _number(gps, ALTITUDE, np.nan) * (-1 if _number(gps, ALTITUDE_REF, 0) == 1 else 1)
     if not (latitude or longitude):
         return None
     return EARTH * np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude), height / EARTH])

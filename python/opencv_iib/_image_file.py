@@ -1,4 +1,4 @@
-"""An image's file, and which of its pixels are described."""
+"""Image files and their masks."""
 from __future__ import annotations
 
 import contextlib
@@ -17,15 +17,15 @@ from opencv_iib._tiff import Pages
 
 
 class ImageFile:
-    """An image's file, which is read once. Pixels are as it has them, not turned as EXIF may ask. All raise ValueError for one that is damaged."""
+    """An image file, read once. Pixels are those stored, not rotated by EXIF. All members raise ValueError for a damaged file."""
 
     def __init__(self, path: Path, exif: bool = True) -> None:
-        """:param exif: whether what EXIF tells of the orientation is right."""
+        """:param exif: False: the orientation in the EXIF data is wrong."""
         self.data, self._exif = read_bytes(path), exif
 
     @functools.cached_property
     def grey(self) -> NDArray[np.uint8]:
-        """H x W; of other depths by their own range."""
+        """H x W, scaled from other depths."""
         return decode(self.data)
 
     @functools.cached_property
@@ -35,60 +35,56 @@ class ImageFile:
 
     @functools.cached_property
     def pages(self) -> Pages:
-        """Of any depth and channels, with what the file says of them."""
+        """Pages of any depth and channels."""
         return decode_all(self.data)
 
     @property
     def suffix(self) -> str:
-        """That of its format, or that of PNG."""
+        """.jpg, .tif, or .png for all other formats."""
         return '.jpg' if self.data.startswith(b'\xff\xd8') else '.tif' if self.data.startswith(TIFF) else '.png'
 
     @property
     def orientation(self) -> int:
-        """How the image is stored, by EXIF, 1 to 8."""
+        """EXIF's orientation, 1 to 8."""
         return exif_orientation(self.data) if self._exif else 1
 
     @property
     def orientation_of_camera(self) -> int:
-        """The same of an image whose pixels a camera's geometry is computed of. :raises ValueError: for one that is stored mirrored."""
+        """The orientation of an image with a camera. :raises ValueError: for an image stored mirrored."""
         stored = exif_orientation(self.data)
-        if stored in MIRRORED:  # also without `exif`
+        if stored in MIRRORED:  # regardless of `exif`
             raise ValueError(f'its EXIF data say that it is stored mirrored (orientation {stored}), and no camera sees a mirrored image: write it '
                              'as it is seen (exiftran -ai FILE, or magick FILE -auto-orient FILE), or remove the entry if it is wrong (exiftool '
                              '-Orientation= FILE)')
         return self.orientation
 
     def small(self, max_size: int, masks: Masks, name: str) -> tuple[np.ndarray, Optional[np.ndarray], np.ndarray]:
-        """The grey image, reduced to this longer side if it is larger; its mask; and pixels of the file a pixel, along x and y."""
+        """The grey image, reduced to this longer side if it is larger, its mask, and the factors of reduction along x and y."""
         mask, image = masks.of(name, self.grey), reduced(self.grey, max_size)
         return image, resized_mask(mask, image), np.array(self.grey.shape[1::-1]) / image.shape[1::-1]
 
 
 class Masks:
-    """Which pixels of images are described: those that are not 0 in masks by COLMAP's names, ``more/a.jpg.png`` in their folder for the
-    image more/a.jpg. An image without one is described as a whole."""
+    """Masks with COLMAP's names: ``more/a.jpg.png`` in their folder for the image more/a.jpg. Pixels that are 0 are not described."""
 
     def __init__(self, path: Optional[Path]) -> None:
-        """:param path: folder, or a file for all images; None: no masks.
-        :raises MissingFile: if there is nothing."""
+        """:param path: folder, or a file for all images; None: no masks. :raises MissingFile: for a missing one."""
         self.path = None if path is None else os.fspath(path)
         if self.path is not None and not os.path.exists(self.path):
             raise MissingFile(f'there is no mask {self.path}')
 
     def file(self, name: str) -> str:
-        """Of an image's mask, if there is one; else ''."""
+        """The file of an image's mask; '' without one."""
         if self.path is None or not os.path.isdir(self.path):
             return self.path or ''
         path = os.path.join(self.path, name + '.png')
         return path if os.path.exists(path) else ''
 
     def stamp(self, path: str, name: str) -> str:
-        """Of an image's file and that of its mask, as :func:`stamp`."""
         return ' '.join(map(stamp, filter(None, (path, self.file(name)))))
 
     def check(self, names: Iterable[str]) -> list[str]:
-        """:return: the files of the images' masks.
-        :raises InvalidOption: for a folder without a mask of any image."""
+        """:return: the files of the images' masks. :raises InvalidOption: for a folder without any of them."""
         names = list(names)
         files = list(filter(None, map(self.file, names)))
         if self.path is not None and not files:
@@ -96,7 +92,7 @@ class Masks:
         return files
 
     def of(self, name: str, image: np.ndarray) -> Optional[np.ndarray]:
-        """:raises InvalidOption: for a mask of another size than the image, and for one that is no image."""
+        """The mask of an image, H x W uint8. :raises InvalidOption: for one of another size than the image, and one that cannot be read."""
         path = self.file(name)
         if not path:
             return None
@@ -111,10 +107,7 @@ class Masks:
 
 
 def check_sizes(folder: Path, names: Sequence[str], masks: Masks, camera: Any) -> None:
-    """Of what was given for all images: masks and a camera, if there is one.
-
-    :raises InvalidOption: if images can be read, but none is of these sizes.
-    """
+    """Checks masks and a camera for all images. :raises InvalidOption: if none of the readable images has their sizes."""
     why = ''
     for name in names if camera is not None or masks.path is not None else ():
         with contextlib.suppress(ValueError, OSError):

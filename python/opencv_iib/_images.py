@@ -1,4 +1,4 @@
-"""Formats of images: which files there are, what is read of them, and how pictures are written."""
+"""Finds, reads and writes images of all formats."""
 from __future__ import annotations
 
 import collections
@@ -18,17 +18,15 @@ from opencv_iib._tiff import Entry, Pages, import_tifffile, read_tiff, tiff_byte
 from opencv_iib._upright import BACK, upright
 
 SUFFIXES = ('.jpg', '.jpeg', '.jpe', '.jfif', '.png', '.tif', '.tiff', '.bmp', '.webp', '.ppm', '.pgm', '.pbm', '.pnm')
-NOT_EVERYWHERE = ('.avif', '.gif', '.heic', '.heif', '.jp2')  #: which some builds of cv2 read
-FORMATS = {'PNG': '.png', 'TIFF': '.tif', 'JPEG': '.jpg'}  #: that pictures are written in, and their suffixes
+SOMETIMES = ('.avif', '.gif', '.heic', '.heif', '.jp2')  #: suffixes that some builds of cv2 read
+FORMATS = {'PNG': '.png', 'TIFF': '.tif', 'JPEG': '.jpg'}  #: formats that are written, and their suffixes
 IMAGES = (*TIFF, b'\xff\xd8', b'\x89PNG', b'RIFF', b'BM', *(b'P%d' % kind for kind in range(1, 8)))
 
 
 def find_images(folder: Path, log: Callable[[str], None] = note) -> list[str]:
     """Paths of images below `folder`, relative to it, with '/', in_order: COLMAP's names.
-
     :param log: gets a line about images that the installed cv2 does not read.
-    :raises OSError: for a folder that cannot be read.
-    """
+    :raises OSError: for a folder that cannot be read."""
     def fail(why: OSError) -> NoReturn:
         raise type(why)(f'{why.filename} cannot be read: {why.strerror}')
 
@@ -36,9 +34,9 @@ def find_images(folder: Path, log: Callable[[str], None] = note) -> list[str]:
     for root, _, files in os.walk(folder, onerror=fail):
         for file in files:
             path, suffix = os.path.join(root, file), os.path.splitext(file)[1].lower()
-            if suffix in SUFFIXES or (suffix in NOT_EVERYWHERE and _is_read(path)):
+            if suffix in SUFFIXES or (suffix in SOMETIMES and _is_read(path)):
                 names.append(os.path.relpath(path, folder).replace(os.sep, '/'))
-            elif suffix in NOT_EVERYWHERE:
+            elif suffix in SOMETIMES:
                 skipped[suffix] += 1
     if skipped:
         kinds = ', '.join(f'{count} {suffix}' for suffix, count in sorted(skipped.items()))
@@ -54,53 +52,46 @@ def _is_read(path: str) -> bool:
 
 
 def in_order(name: str) -> tuple[list[tuple[int, str]], str]:
-    """A key to sort names by as people do: 2 before 10, and b before C."""
+    """A key that sorts names as people do: 2 before 10, and b before C."""
     return [(int(part), '') if n % 2 else (-1, part) for n, part in enumerate(re.split('([0-9]+)', name.lower()))], name
 
 
 def stamp(path: str) -> str:
-    """Of a file's content, whatever its time; '' of a file that cannot be read."""
+    """A hash of a file's content; '' for an unreadable file."""
     with contextlib.suppress(OSError, ValueError):
         return hashlib.blake2b(read_bytes(path), digest_size=16).hexdigest()
     return ''
 
 
 def is_utf8(name: str) -> bool:
-    """Whether a file's name can be stored; those that Python could not decode cannot."""
+    """Whether Python could decode a file's name."""
     return not any('\ud800' <= letter <= '\udfff' for letter in name)
 
 
 def is_listable(name: str) -> bool:
-    """Whether a name can stand in COLMAP's and hloc's lists, two a line with a blank between them."""
+    """Whether COLMAP's and hloc's lists can hold a name: two a line, with a blank between them."""
     return not name.startswith('#') and not any(letter.isspace() for letter in name)
 
 
 def import_cv2() -> Any:
-    """cv2, whichever package has it: an extra that names one would install it over another.
-
-    :raises ImportError: saying what to install.
-    """
+    """cv2 of any package. :raises ImportError: saying what to install."""
     return import_module('cv2', 'images are read by cv2: pip install opencv-python, or opencv-python-headless without windows, or apt install '
                                 'python3-opencv')
 
 
 def decode(data: bytes, colour: bool = False) -> np.ndarray:
-    """Of a file's bytes H x W, or H x W x 3, BGR, uint8: like COLMAP, not turned as EXIF may ask, and other depths scaled by their own range.
-
-    :raises ValueError: if it cannot be read, also if it is a JPEG without its end, which cv2 would fill with grey."""
+    """The image in a file's bytes, H x W or H x W x 3 (BGR), uint8, not rotated by EXIF, scaled from other depths.
+    :raises ValueError: if it cannot be read, also for a JPEG without its end, which cv2 would fill with grey."""
     cv2, image = import_cv2(), None
     if not data.startswith(TIFF):
         image = _imdecode(data, (cv2.IMREAD_COLOR if colour else cv2.IMREAD_GRAYSCALE) | cv2.IMREAD_IGNORE_ORIENTATION | cv2.IMREAD_ANYDEPTH)
-    if image is None or image.dtype != np.uint8:  # what is not of 8 bits as the file has it
+    if image is None or image.dtype != np.uint8:
         image = decode_first(data)
     return in_8_bits(image, colour)
 
 
 def decode_first(data: bytes) -> np.ndarray:
-    """The first page, as a file has it: H x W, or with the channels last, BGR and alpha where they are 3 or 4.
-
-    :raises ValueError: as decode.
-    """
+    """The first page of a file, of its own depth: H x W, or with channels last, 3 or 4 of them BGR and alpha. :raises ValueError: as decode."""
     if not data.startswith(TIFF):
         return _unchanged(data)
     if tiff_channels(data) in (1, 3, 4):
@@ -110,16 +101,12 @@ def decode_first(data: bytes) -> np.ndarray:
 
 
 def decode_all(data: bytes) -> Pages:
-    """All pages.
-
-    :raises ValueError: as decode.
-    """
     return read_tiff(data, _unchanged) if data.startswith(TIFF) else Pages([_unchanged(data)])
 
 
 def _unchanged(data: bytes) -> np.ndarray:
     image = _imdecode(data, import_cv2().IMREAD_UNCHANGED)
-    return upright(image, BACK[exif_orientation(data)]) if data.startswith(TIFF) else image  # cv2 turns TIFF alone, whatever the flags
+    return upright(image, BACK[exif_orientation(data)]) if data.startswith(TIFF) else image  # cv2 rotates TIFF regardless of flags
 
 
 def _imdecode(data: bytes, flags: int) -> np.ndarray:
@@ -139,20 +126,17 @@ def _imdecode(data: bytes, flags: int) -> np.ndarray:
 
 
 def in_8_bits(image: np.ndarray, colour: bool) -> np.ndarray:
-    """What is described of an image as its file has it: H x W, or with `colour` H x W x 3, uint8; of other numbers by their own range.
-
-    :raises ValueError: for one without a finite number.
-    """
+    """An image as it is described: H x W, or with `colour` H x W x 3, uint8. :raises ValueError: for one without finite numbers."""
     return _with_channels(_scaled(image), colour)
 
 
-@np.errstate(invalid='ignore', over='ignore')  # of NaN and infinity, and of limits beyond the largest number
+@np.errstate(invalid='ignore', over='ignore')  # for NaN, infinity, and limits that overflow
 def _scaled(image: np.ndarray) -> np.ndarray:
-    """Other numbers scaled from their own range, of which a few dead pixels are no part; NaN becomes 0."""
+    """Scales other types from their own range, without a few dead pixels; NaN becomes 0."""
     if image.dtype == np.uint8:
         return image
     if image.dtype.kind == 'f':
-        image = image / 2  # so that no difference is beyond the largest number
+        image = image / 2  # so that differences do not overflow
     colours = image[..., :3] if image.ndim == 3 else image
     values = colours[np.isfinite(colours)]
     if not values.size:
@@ -165,12 +149,12 @@ def _scaled(image: np.ndarray) -> np.ndarray:
 
 
 def _with_channels(image: np.ndarray, colour: bool) -> np.ndarray:
-    """H x W, or with colour H x W x 3, of as many as there are."""
+    """H x W, or with colour H x W x 3, from any number of channels."""
     cv2, channels = import_cv2(), image.shape[2] if image.ndim == 3 else 1
     if channels in (3, 4):
         return image[..., :3] if colour else cv2.cvtColor(image[..., :3], cv2.COLOR_BGR2GRAY)
     grey = image if image.ndim == 2 else np.ascontiguousarray(image[..., 0])
-    if channels > 4:  # of bands, all together
+    if channels > 4:  # spectral bands
         grey = np.rint(image.mean(axis=2)).astype(np.uint8)
     return cv2.cvtColor(grey, cv2.COLOR_GRAY2BGR) if colour else grey
 
@@ -179,7 +163,7 @@ TIFFS = ('.tif', '.tiff')
 
 
 def check_picture(path: Path) -> None:
-    """:raises InvalidOption: for a suffix of no format that cv2 writes."""
+    """:raises InvalidOption: for a suffix that cv2 cannot write."""
     cv2, suffix = import_cv2(), os.path.splitext(os.fspath(path))[1].lower()
     if suffix in TIFFS:
         import_tifffile()
@@ -191,16 +175,13 @@ def check_picture(path: Path) -> None:
 
 
 def write_picture(path: Path, picture: np.ndarray, *pages: np.ndarray, no_data: str = '', geo: Sequence[Entry] = ()) -> None:
-    """An image as decode_first gives it, by the suffix of the name.
-
-    :param pages: of a TIFF, further ones.
-    :param no_data: of a TIFF, as Pages has it; so is `geo`.
+    """Writes an image, laid out as by decode_first, in the format of the suffix.
+    :param pages: further ones, of a TIFF.
+    :param no_data: of a TIFF, as in Pages; so is `geo`.
     :raises InvalidOption: as check_picture.
-    :raises ValueError: for what the format cannot hold, and for TIFF without tifffile.
-    """
+    :raises ValueError: for an image that the format cannot hold, and for TIFF without tifffile."""
     check_picture(path)
-    path = os.fspath(path)
-    suffix = os.path.splitext(path)[1].lower()
+    path, suffix = os.fspath(path), os.path.splitext(path)[1].lower()
     if suffix in TIFFS:
         write_whole(path, tiff_bytes([picture, *pages], no_data, geo))
     elif pages or not holds(suffix, picture):
@@ -210,18 +191,16 @@ def write_picture(path: Path, picture: np.ndarray, *pages: np.ndarray, no_data: 
 
 
 def reduced(image: np.ndarray, max_size: int) -> np.ndarray:
-    """Of so many pixels at the longer side, if it has more and `max_size` is not 0."""
-    height, width = image.shape[:2]
-    longer = max(width, height)
+    """An image reduced to this longer side; 0, or a smaller image: as it is."""
+    longer = max(image.shape[:2])
     if not 0 < max_size < longer:
         return image
-    cv2 = import_cv2()
-    size = [max(1, round(side * max_size / longer)) for side in (width, height)]
+    cv2, size = import_cv2(), [max(1, round(side * max_size / longer)) for side in image.shape[1::-1]]
     return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA))
 
 
 def resized_mask(mask: Optional[np.ndarray], image: np.ndarray) -> Optional[np.ndarray]:
-    """Of the size that the image was reduced to; None for none."""
+    """A mask in the size of a reduced image; None without one."""
     if mask is None or mask.shape == image.shape[:2]:
         return mask
     cv2 = import_cv2()
@@ -229,7 +208,7 @@ def resized_mask(mask: Optional[np.ndarray], image: np.ndarray) -> Optional[np.n
 
 
 def can_be(text: str, dtype: np.dtype) -> bool:
-    """Whether a pixel of this type can have a value: -9999 is none of 8 bits without a sign."""
+    """Whether pixels of this type can have a value: uint8 cannot be -9999."""
     try:
         value = float(text)
     except ValueError:
@@ -240,7 +219,7 @@ def can_be(text: str, dtype: np.dtype) -> bool:
 
 
 def holds(suffix: str, picture: np.ndarray) -> bool:
-    """Whether files of a suffix keep all of a picture of one page."""
+    """Whether files of a suffix can hold a picture of one page without loss of depth or channels."""
     depths = {'.png': (np.uint8, np.uint16), '.tif': (picture.dtype,)}.get(suffix, (np.uint8,))
     channels = {'.png': (1, 3, 4), '.tif': picture.shape[2:]}.get(suffix, (1, 3))
     return picture.dtype in depths and (picture.ndim == 2 or picture.shape[2] in channels)

@@ -1,6 +1,6 @@
-"""The documented methods of the extension, which users call, as functions of Python.
+"""Makes functions of Python of the documented methods of the extension.
 
-Methods of nanobind's have no inspect.signature, and tell mistakes by C++ types. Undocumented ones are for this package alone.
+Methods of nanobind have no inspect.signature, and their errors name types of C++. Methods without a docstring are internal.
 """
 from __future__ import annotations
 
@@ -14,14 +14,13 @@ import opencv_iib.enums
 from opencv_iib import _core
 from opencv_iib._arguments import integer, number
 
-# What is done with an argument, by its annotation; others are passed on as they are. Numbers that are returned become values of enums.
+# How arguments are checked, by their annotations; others are passed on as they are. Returned numbers become enums where annotated so.
 CHECKS = {'int': 'integer({0}, {0!r})', 'float': 'number({0}, {0!r})', 'bool': 'bool({0})'}
-# What functions and annotations refer to.
 NAMES = {'integer': integer, 'number': number, 'typing': typing, 'numpy': numpy, 'opencv_iib': opencv_iib}
 
 
 def function_of(method: Any, signature: str, doc: str) -> Any:
-    """Of a signature as in ``def setSigma(self, sigma: float) -> None``."""
+    """A function with a signature such as ``def setSigma(self, sigma: float) -> None``, which calls the method."""
     function: Any = ast.parse(signature + ': ...').body[0]
     passed = [CHECKS.get(ast.unparse(each.annotation) if each.annotation else '', '{0}').format(each.arg) for each in function.args.args]
     call = f'method({", ".join(passed)})'

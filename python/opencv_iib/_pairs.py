@@ -1,4 +1,4 @@
-"""Which pairs of images to match. Pairs are made one by one, so that their number costs no memory."""
+"""Chooses pairs of images to match. Pairs are generated one by one, so that many need no memory."""
 from __future__ import annotations
 
 import itertools
@@ -14,16 +14,15 @@ from opencv_iib._images import is_utf8
 from opencv_iib.matcher import HierarchicalMatcher
 
 Pair = tuple[int, int]
-BLOCK = 50  # images of a block: the codes of two blocks are held while its pairs are matched
+BLOCK = 50  # images a block: the codes of two blocks are in memory while their pairs are matched
 
 
 def pair_name(a: str, b: str) -> str:
-    """Of a pair of images, in hloc's files."""
     return '/'.join(name.replace('/', '-') for name in (a, b))
 
 
 def exhaustive(count: int, block: int = BLOCK) -> Iterator[Pair]:
-    """All pairs of 0..count-1, block by block, so that a cache of 2 * `block` images misses seldom."""
+    """All pairs of 0..count-1, block by block, for a cache of 2 * `block` images."""
     for first in range(0, count, block):
         for second in range(first, count, block):
             for a in range(first, min(first + block, count)):
@@ -32,7 +31,7 @@ def exhaustive(count: int, block: int = BLOCK) -> Iterator[Pair]:
 
 
 def tiles(pairs: Iterable[Pair], side: int) -> Iterator[list[Pair]]:
-    """The same pairs in lists, each of `side` images with as many others; with a side of 1, as they come."""
+    """The pairs in lists, each of `side` images with as many others; a side of 1 keeps their order."""
     def tile(pair: Pair) -> Pair:
         return pair[0] // side, pair[1] // side
 
@@ -53,14 +52,14 @@ def distinct(pairs: Iterable[Pair]) -> Iterator[Pair]:
 
 
 def sequential(count: int, overlap: int) -> Iterator[Pair]:
-    """Each image with the `overlap` that come after it by name."""
+    """Each image with the next `overlap` by name."""
     for a in range(count):
         for b in range(a + 1, min(a + 1 + overlap, count)):
             yield a, b
 
 
 def nearest(places: Sequence[Optional[np.ndarray]], neighbours: int) -> Iterator[Pair]:
-    """Each image with those nearest to it; images without a place are in no pair. A coordinate that one of two lacks (NaN) does not count."""
+    """Each image with those nearest to it, without images that have no place. Coordinates that are NaN in one of two places are ignored."""
     placed = [i for i, place in enumerate(places) if place is not None]
     known = np.array([places[i] for i in placed], float)
     for a, place in zip(placed, known):
@@ -70,14 +69,12 @@ def nearest(places: Sequence[Optional[np.ndarray]], neighbours: int) -> Iterator
 
 
 def read_list(path: Path, numbers: Mapping[str, Optional[int]]) -> tuple[list[Pair], list[str]]:
-    """Pairs of a text file with two names a line, as COLMAP and hloc write them, and why other lines are none; '#' begins a line of comment.
+    """Pairs of a text file with two names a line, as COLMAP and hloc write them, and messages about invalid lines; '#' begins a comment.
 
-    Names may be in quotes, begin with ./ and have \\ for /; a comma may be between them, a score behind.
-
+    Names may be quoted, begin with ./ and have \\ for /. A comma may separate them, and a score follow.
     :param numbers: of the images by name; None for those that could not be described, whose pairs are left out.
     :raises ValueError: for a file that is not UTF-8.
-    :raises MissingFile: if the file is not there.
-    """
+    :raises MissingFile: for a missing file."""
     if not os.path.exists(path):
         raise MissingFile(f'there is no list of pairs {os.fspath(path)}')
     pairs, wrong = [], []
@@ -99,11 +96,7 @@ def read_list(path: Path, numbers: Mapping[str, Optional[int]]) -> tuple[list[Pa
 
 
 def check_list(path: Path, numbers: Mapping[str, Optional[int]], log: Callable[[str], None]) -> tuple[list[Pair], int]:
-    """As read_list, but the lines that are left out are counted.
-
-    :param log: gets each of them.
-    :raises InvalidOption: for a list without pairs.
-    """
+    """As read_list, with the number of invalid lines, which are logged. :raises InvalidOption: for a list without pairs."""
     pairs, wrong = read_list(path, numbers)
     if not pairs:
         raise InvalidOption(wrong[0] if wrong else f'{os.fspath(path)} has no pair of images')
@@ -116,7 +109,7 @@ SEPARATOR = r'\s*[,;]\s*|\s+'
 
 
 def _names(line: str, known: Container[str]) -> list[str]:
-    """Two names of a line, known ones if it can be cut into these; none of a line that is not of two words."""
+    """The two names of a line, known ones if possible; an empty list if it has not two words."""
     def name(text: str) -> str:
         return text if text in known else posixpath.normpath(text.strip('"\'').replace('\\', '/'))
 
@@ -134,14 +127,12 @@ def retrieval(count: int, load: Callable[[int], np.ndarray], level_sizes: Sequen
               sample: int = 200) -> Iterator[Pair]:
     """Each image with those that most of its codes vote for.
 
-    Each of the `sample` strongest codes of an image votes for the image of its nearest code among the samples of
-    all others. The samples are held: count * sample * bytes.
-    """
+    Each of the `sample` strongest codes votes for the image of its nearest code among all other images' samples. Memory: count * sample * bytes."""
     matcher = HierarchicalMatcher.create(level_sizes)
     matcher.add([load(i)[:sample] for i in range(count)])
     for a in range(count):
         codes = load(a)[:sample]
-        images = matcher.knnMatchArrays(codes, k=3)[2]  # an image's own codes come first, at distance 0
+        images = matcher.knnMatchArrays(codes, k=3)[2]  # three, since an image's own codes have distance 0
         others = (images >= 0) & (images != a)
         first = np.take_along_axis(images, others.argmax(axis=1)[:, None], 1)[others.any(axis=1)]
         votes = np.bincount(first.ravel(), minlength=count)

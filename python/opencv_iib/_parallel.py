@@ -1,4 +1,4 @@
-"""Who does the work on images and pairs: threads of this process, or the workers of a Dask client."""
+"""Runs jobs on images and pairs: in threads of this process, or by the workers of a Dask client."""
 from __future__ import annotations
 
 import collections
@@ -16,22 +16,19 @@ MAX_THREADS = 1024
 
 
 def thread_count(workers: Optional[int]) -> int:
-    """As many, or one a core for None. :raises InvalidOption: for less than 1, or more than a system can have."""
+    """That many; None: one a core. :raises InvalidOption: for less than 1, or more than a system can have."""
     check_count(1 if workers is None else workers, 'workers', MAX_THREADS)
     return workers or os.cpu_count() or 1
 
 
 class Threads:
-    """Of this process."""
-
     tile_side = 1  #: images that a job matches with as many others
-    lost: tuple[type[Exception], ...] = ()  #: what is raised, by no job, when those who work have gone
+    lost: tuple[type[Exception], ...] = ()  #: exceptions that mean the workers are gone; jobs never raise them
 
     def __init__(self, count: int) -> None:
         self._count = count
 
     def executor(self) -> concurrent.futures.Executor:
-        """What jobs are submitted to."""
         return concurrent.futures.ThreadPoolExecutor(self._count)
 
     def ahead(self) -> int:
@@ -39,7 +36,7 @@ class Threads:
         return 2 * self._count
 
     def hold(self, *arrays: np.ndarray) -> Any:
-        """What a job takes for the arrays, as one argument or within one."""
+        """Arrays in the form in which jobs get them, as one argument or within one."""
         return arrays
 
 
@@ -60,37 +57,32 @@ class Cluster(Threads):
         return 2 * max(1, int(sum(self._client.nthreads().values())))  # workers come and go
 
     def hold(self, *arrays: np.ndarray) -> Any:
-        # A worker keeps and hands on what it was given once. As a task and not as scattered data: if the worker vanishes,
-        # the scheduler gives the arrays to another.
+        # Workers fetch a task's result once and pass it on. Scattered data would be lost with the worker that holds it.
         return self._client.submit(tuple, arrays, pure=False)
 
 
-def in_parallel(function: Callable[[T], R], jobs: Iterable[T], crew: Threads, told: tuple[type[Exception], ...] = ()) -> Iterator[tuple[T, Any]]:
-    """Has jobs done, a few ahead: each job and its result, in order, in bounded memory.
-
-    :param told: exceptions that are results; others are raised.
-    :raises ConnectionError: if those who work have gone.
-    """
+def in_parallel(function: Callable[[T], R], jobs: Iterable[T], workers: Threads, returned: tuple[type[Exception], ...] = ()) -> Iterator[tuple[T, Any]]:
+    """Runs jobs, a few ahead: yields each job and its result, in order, in bounded memory.
+    :param returned: exceptions of jobs that are results; others are raised.
+    :raises ConnectionError: if the workers are gone."""
     waiting: collections.deque[tuple[T, concurrent.futures.Future[R]]] = collections.deque()
 
     def first() -> tuple[T, Any]:
         job, future = waiting.popleft()
-        failed = future.exception()
-        if failed is not None and not isinstance(failed, told):
-            raise failed
-        return job, future.result() if failed is None else failed
+        failure = future.exception()
+        return job, failure if isinstance(failure, returned) else future.result()
 
     try:
-        with crew.executor() as pool:
+        with workers.executor() as executor:
             try:
                 for job in jobs:
-                    waiting.append((job, pool.submit(function, job)))
-                    while len(waiting) >= crew.ahead():
+                    waiting.append((job, executor.submit(function, job)))
+                    while len(waiting) >= workers.ahead():
                         yield first()
                 while waiting:
                     yield first()
             finally:
                 for _, future in waiting:
                     future.cancel()
-    except crew.lost:
+    except workers.lost:
         raise ConnectionError('the scheduler has gone: when it is back, the same command goes on from here') from None

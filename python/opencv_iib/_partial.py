@@ -1,4 +1,4 @@
-"""What an unfinished run leaves for the next one: a file of SQLite, which neither a kill nor a full disk harms."""
+"""The results of an unfinished run: a file of SQLite, which survives kills and full disks, and from which the next run continues."""
 from __future__ import annotations
 
 import contextlib
@@ -6,14 +6,13 @@ import os
 import sqlite3
 from typing import NoReturn
 
-LOGS = ('-wal', '-shm', '-journal')  # that SQLite writes beside a file
+LOGS = ('-wal', '-shm', '-journal')  #: endings of the files that SQLite writes beside a database
 
 
 def open_partial(path: str, table: str) -> sqlite3.Connection:
-    """:param table: by which a file is known that is there.
-    :raises FileExistsError: for a file that no such run has left."""
+    """Opens such a file, or a new one. :raises FileExistsError: for a file without this table, which is not ours."""
     def refuse(log: str = '') -> NoReturn:
-        raise FileExistsError(f'{path}{log} is there and not of an unfinished run: remove it, or give what is written another name')
+        raise FileExistsError(f'{path}{log} exists and is not of an unfinished run: remove it, or choose another name for the output')
 
     if not os.path.exists(path) or not os.path.getsize(path):
         for log in LOGS:
@@ -28,14 +27,14 @@ def open_partial(path: str, table: str) -> sqlite3.Connection:
         db.execute('PRAGMA synchronous=NORMAL')
     except Exception as e:
         db.close()
-        if type(e) is sqlite3.DatabaseError:  # a full disk is a more special one
+        if type(e) is sqlite3.DatabaseError:  # not its subclasses, such as for a full disk
             refuse()
         raise
     return db
 
 
 def close_partial(db: sqlite3.Connection, path: str, remove: bool) -> None:
-    """:param remove: there is nothing to go on from."""
+    """:param remove: also delete the file, since no run has to continue from it."""
     db.close()
     for end in (*LOGS, '') if remove else ():
         with contextlib.suppress(FileNotFoundError):

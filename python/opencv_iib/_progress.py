@@ -1,13 +1,15 @@
-"""One line that says how far it is and how long it will take."""
+"""A line that shows how much of some work is done and how long the rest will take."""
 from __future__ import annotations
 
 import contextlib
 import sys
 import time
 from datetime import timedelta
-from typing import Optional, TextIO
+from typing import Iterable, Iterator, Optional, TextIO, TypeVar
 
 from opencv_iib._streams import is_quiet, put
+
+T = TypeVar('T')
 
 
 class Progress:
@@ -25,7 +27,6 @@ class Progress:
         self.start = self.shown = time.monotonic()
 
     def step(self, count: int = 1) -> None:
-        """So many more are done."""
         self.done += count
         now = time.monotonic()
         if now - self.shown >= (.2 if self.live else 30):
@@ -33,7 +34,6 @@ class Progress:
             self._write('\r' if self.live else '', '' if self.live else '\n')
 
     def close(self) -> None:
-        """Ends the line."""
         self._write('\r' if self.live else '', '\n')
 
     def _write(self, begin: str, end: str) -> None:
@@ -44,5 +44,14 @@ class Progress:
             fresh = self.done - self.first
             if fresh and self.done < self.total:
                 text += f', {timedelta(seconds=round(passed / fresh * (self.total - self.done)))} left'
-        with contextlib.suppress(OSError, ValueError):  # full, closed: no reason to end the work
+        with contextlib.suppress(OSError, ValueError):  # a full or closed stream must not end the work
             put(f'{begin}{text}, {timedelta(seconds=round(passed))}   {end}', self.stream)
+
+
+def with_progress(results: Iterable[T], title: str, total: int, done: int = 0) -> Iterator[T]:
+    """The results, each of which is a step."""
+    progress = Progress(title, total, done)
+    for result in results:
+        yield result
+        progress.step()
+    progress.close()

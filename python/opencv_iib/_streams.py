@@ -1,4 +1,4 @@
-"""Standard output and error: missing (pythonw), closed or full, or of an encoding that lacks the letters of a file's name."""
+"""Standard output and error, which may be missing (pythonw), closed, full, or of an encoding that lacks letters of a file's name."""
 from __future__ import annotations
 
 import contextlib
@@ -13,7 +13,7 @@ _quiet = False
 
 @contextlib.contextmanager
 def quiet(wanted: bool = True) -> Iterator[None]:
-    """Within it, no progress is shown, whichever thread makes it."""
+    """Hides the progress of all threads within the block."""
     global _quiet
     before, _quiet = _quiet, wanted
     try:
@@ -23,15 +23,11 @@ def quiet(wanted: bool = True) -> Iterator[None]:
 
 
 def is_quiet() -> bool:
-    """Whether no progress is to be shown."""
     return _quiet
 
 
 def put(text: str, stream: Optional[TextIO]) -> None:
-    """Writes a text, with escapes for letters that the stream's encoding lacks; nothing without a stream.
-
-    :raises OSError: of the stream, such as for a full disk.
-    """
+    """Writes a text, with escapes for letters that the stream's encoding lacks; does nothing without a stream."""
     if stream is not None:
         encoding = getattr(stream, 'encoding', None) or 'utf-8'
         stream.write(text.encode(encoding, 'backslashreplace').decode(encoding))
@@ -39,8 +35,8 @@ def put(text: str, stream: Optional[TextIO]) -> None:
 
 
 def note(line: str) -> None:
-    """A line on standard error, one also where a file's name has two. What is told of the work does not end it where nobody can read it."""
-    with contextlib.suppress(OSError, ValueError):  # full, closed
+    """Writes one line to standard error, even if a file's name in it has two lines. A full or closed stream is no error."""
+    with contextlib.suppress(OSError, ValueError):
         put('\\n'.join(line.splitlines()) + '\n', sys.stderr)
 
 
@@ -59,7 +55,7 @@ def check_open_file(path: str) -> None:
 
 
 def write_to_open_file(path: str, content: bytes) -> None:
-    """Goes on behind what >> adds to."""
+    """Appends where the shell's >> would."""
     check_open_file(path)
     if path not in STANDARD_OUTPUT:
         with open(path, 'wb') as file:

@@ -1,32 +1,31 @@
-"""Two-view geometry of matches by MAGSAC: of a database for COLMAP, and whether two images show the same."""
+"""Two-view geometry by MAGSAC or COLMAP's own program, and whether two images show the same."""
 from __future__ import annotations
 
-from typing import Optional
+import os
+import shutil
+import subprocess
+import tempfile
+from typing import Iterable, Optional
 
 import numpy as np
 
 from opencv_iib.geometry import logFalseAlarms
 
 MIN_INLIERS = 15  # COLMAP's
-CERTAIN = -3  # logFalseAlarms above it may be chance
+CERTAIN = -3  # logFalseAlarms above it are not significant
 
 
-def magsac(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5
-           ) -> tuple[np.ndarray, Optional[np.ndarray]]:
-    """Which matches agree with one fundamental matrix, and that matrix (3 x 3; None if there is none).
-
-    :param points_a: M x 2, pixels of the first image.
-    :param points_b: M x 2, of the second.
-    :param threshold: pixels from the epipolar line.
-    """
+def magsac(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5) -> tuple[np.ndarray, Optional[np.ndarray]]:
+    """Whether each match agrees with a fundamental matrix, and that matrix (3 x 3; None if it is not significant).
+    :param points_a: M x 2, pixels of the first image; so are `points_b` of the second.
+    :param threshold: pixels from the epipolar line."""
     import cv2
     none = np.zeros(len(points_a), bool)
     if len(points_a) < MIN_INLIERS:
         return none, None
     try:
-        matrix, mask = cv2.findFundamentalMat(np.ascontiguousarray(points_a, np.float64),
-                                              np.ascontiguousarray(points_b, np.float64), cv2.USAC_MAGSAC,
-                                              threshold, .9999, 10000)
+        matrix, mask = cv2.findFundamentalMat(np.ascontiguousarray(points_a, np.float64), np.ascontiguousarray(points_b, np.float64),
+                                              cv2.USAC_MAGSAC, threshold, .9999, 10000)
     except cv2.error:  # degenerate points, for some versions
         return none, None
     if matrix is None or matrix.shape != (3, 3) or mask is None:
@@ -37,7 +36,7 @@ def magsac(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5
 
 
 def show_the_same(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5) -> bool:
-    """Whether more matches than chance may give agree with one fundamental matrix or one homography."""
+    """Whether the matches that agree with a fundamental matrix or a homography are significant."""
     import cv2
     if magsac(points_a, points_b, threshold)[0].any():
         return True
@@ -49,3 +48,25 @@ def show_the_same(points_a: np.ndarray, points_b: np.ndarray, threshold: float =
     except cv2.error:  # degenerate points, for some versions
         return False
     return mask is not None and logFalseAlarms(points_a, points_b, mask, False, threshold) < CERTAIN
+
+
+def colmap_binary() -> Optional[str]:
+    return shutil.which('colmap')
+
+
+def matches_importer(binary: str, database: str, pairs: Iterable[tuple[str, str]]) -> None:
+    """Has COLMAP verify the matches of a database. :raises RuntimeError: with the program's last lines, if it fails."""
+    with tempfile.NamedTemporaryFile('w', suffix='.txt', encoding='utf-8', delete=False) as file:
+        for a, b in pairs:
+            file.write(f'{a} {b}\n')
+    try:
+        def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+            return subprocess.run([binary, 'matches_importer', *arguments], capture_output=True, text=True,
+                                  env={**os.environ, 'QT_QPA_PLATFORM': 'offscreen'})
+        gpu = 'FeatureMatching' if '--FeatureMatching.use_gpu' in run('--help').stdout else 'SiftMatching'
+        done = run('--database_path', database, '--match_list_path', file.name, '--match_type', 'pairs', f'--{gpu}.use_gpu', '0')
+        if done.returncode:
+            tail = '\n'.join((done.stdout + done.stderr).splitlines()[-5:])
+            raise RuntimeError(f'colmap matches_importer failed:\n{tail}')
+    finally:
+        os.unlink(file.name)

@@ -1,4 +1,4 @@
-"""Images that their files store turned, as EXIF's orientation tells: what is upright in them, and back to the file's pixels."""
+"""Between images as their files store them, with EXIF's orientation, and upright images."""
 from __future__ import annotations
 
 from typing import Any
@@ -8,16 +8,14 @@ from numpy.typing import NDArray
 
 from opencv_iib._arguments import integer
 
-BACK = {**{orientation: orientation for orientation in range(1, 9)}, 6: 8, 8: 6}  #: orientations that turn back what these turn upright
+BACK = {**{orientation: orientation for orientation in range(1, 9)}, 6: 8, 8: 6}  #: orientations of the inverse rotations
 TRANSPOSED, TO_THE_LEFT, TO_THE_TOP = (5, 6, 7, 8), (2, 3, 6, 7), (3, 4, 7, 8)  # orientations: axes exchanged, then each reversed
 
 
 def upright(image: NDArray[Any], orientation: int) -> NDArray[Any]:
-    """An image or a mask as people see it.
-
+    """An image or a mask, made upright.
     :param orientation: EXIF's, 1 (as it is) to 8.
-    :raises ValueError: for another number.
-    """
+    :raises ValueError: for another number."""
     if not 1 <= integer(orientation, 'orientation') <= 8:
         raise ValueError(f'orientation is {orientation}: it must be one of EXIF, 1 to 8')
     turned = image.swapaxes(0, 1) if orientation in TRANSPOSED else image
@@ -25,10 +23,10 @@ def upright(image: NDArray[Any], orientation: int) -> NDArray[Any]:
 
 
 class Turn:
-    """From the pixels of an upright image to those of its file."""
+    """Maps pixels of an upright image to those of the stored one."""
 
     def __init__(self, orientation: int, width: int, height: int) -> None:
-        """:param width: of the file's image; so is `height`."""
+        """:param width: of the stored image; so is `height`."""
         w, h = (height, width) if orientation in TRANSPOSED else (width, height)
         left, top = orientation in TO_THE_LEFT, orientation in TO_THE_TOP
         #: 3 x 3
@@ -42,7 +40,7 @@ class Turn:
         return (points @ self.matrix[:2, :2].T + self.matrix[:2, 2]).astype(points.dtype, copy=False)
 
     def keypoints(self, rows: NDArray[np.float32]) -> NDArray[np.float32]:
-        """N x 7, as keypoints_to_array makes them. Those without an angle get that of the upright image's rows."""
+        """N x 7, as of keypoints_to_array. Keypoints without an angle get the angle of the upright image's rows."""
         if self.trivial:
             return rows
         turned, angles = rows.copy(), np.radians(np.where(rows[:, 3] < 0, 0, rows[:, 3]))
@@ -52,7 +50,7 @@ class Turn:
         return turned
 
     def corners(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Of the upright image's corners, from the top left one clockwise, to those of the file's."""
+        """Reorders values of the upright image's corners, clockwise from the top left, as those of the stored image's."""
         signs = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
         return values[[int(np.flatnonzero((signs @ self.matrix[:2, :2].T == corner).all(axis=1))[0]) for corner in signs]]
 

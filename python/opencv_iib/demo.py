@@ -1,24 +1,21 @@
-"""Two images matched by IIB and, beside it, by SIFT and ORB or the detector's own descriptor: a picture and a line, as scripts/demo.sh's."""
+"""Matches two images by IIB and, for comparison, by SIFT and ORB or by the detector's own descriptor, and draws both."""
 from __future__ import annotations
 
-import os
 from typing import NamedTuple, Optional, Sequence
 
 import numpy as np
 
 from opencv_iib._arguments import Path
 from opencv_iib._drawing import GOOD, INK, OTHER, Caption, draw
-from opencv_iib._files import check_images, check_outputs
-from opencv_iib._image_file import Masks
-from opencv_iib._images import check_picture, import_cv2, write_picture
-from opencv_iib.features import FeatureOptions, Features, make_detector
+from opencv_iib._images import import_cv2, write_picture
+from opencv_iib.features import FeatureOptions, make_detector
 from opencv_iib.functions import match
 from opencv_iib.keypoints import keypoints_to_array
-from opencv_iib.measure import View
+from opencv_iib.measure import View, read_pair
 from opencv_iib.views import match_stored, rotation_and_scale, similarity
 
 MAX_ERROR = 3  # pixels from the homography, in the second image
-MIN_CONSISTENT = 10  # a homography agrees with up to 6 of matches drawn at random
+MIN_CONSISTENT = 10  # up to 6 random matches agree with a homography
 
 
 class Result(NamedTuple):
@@ -27,11 +24,11 @@ class Result(NamedTuple):
     name: str
     points_a: np.ndarray  #: M x 2, pixels
     points_b: np.ndarray  #: M x 2
-    good: np.ndarray  #: M: whether it agrees with the homography; none does where no homography was found
+    good: np.ndarray  #: M: whether each match agrees with the homography; False if none was found
 
     @property
     def view(self) -> tuple[float, float]:
-        """Rotation of the second image, degrees, and its scale; 0 and 1 where it is matched as it is."""
+        """Rotation of the second image in degrees, and its scale; 0 and 1 if the images match as they are."""
         return rotation_and_scale(similarity(self.points_a[self.good], self.points_b[self.good]))
 
     def __str__(self) -> str:
@@ -42,22 +39,17 @@ class Result(NamedTuple):
 
 
 def demo(image_a: Path, image_b: Path, out: Path, options: FeatureOptions = FeatureOptions(points=1000)) -> list[Result]:
-    """Matches two images by the recommended chain, and by SIFT and ORB or what the detector has; draws all, IIB below.
+    """Matches two images by the recommended chain, and by SIFT and ORB or the detector's own descriptor. Draws all, IIB below.
 
-    *Consistent* are matches within 3 pixels of the homography that most agree with, if those are ten.
+    *Consistent* matches lie within 3 pixels of the best homography, which at least ten must do.
 
     :param out: picture to write.
-    :return: of IIB first.
-    :raises ValueError: for a file that is no image, or one that cannot be written.
-    :raises FileExistsError: for an image as the picture to write.
-    :raises FileNotFoundError: for an image that is not there.
-    """
+    :return: results, IIB's first.
+    :raises ValueError: for a file that is no image, or cannot be written.
+    :raises FileExistsError: if the picture to write is an image.
+    :raises FileNotFoundError: for a missing image."""
     options.check()
-    check_images(image_a, image_b)
-    masks, features, paths = Masks(options.mask), Features(options), [os.fspath(path) for path in (image_a, image_b)]
-    check_outputs([out], (*paths, *masks.check(list(map(os.path.basename, paths)))))
-    check_picture(out)
-    views = [View.of(path, masks, features, None, os.path.basename(path)) for path in paths]
+    views, _ = read_pair((image_a, image_b), None, out, options)
     results = [_result('IIB', [view.turn.keypoints(view.rows) for view in views], match(views[0].codes, views[1].codes).pairs)]
     if options.detector == 'HESSIAN' and (not results[0].good.any() or results[0].view != (0, 1)):
         images, turns, allowed = zip(*((view.image, view.turn, view.mask) for view in views))
@@ -86,7 +78,7 @@ def _judged(name: str, a: np.ndarray, b: np.ndarray) -> Result:
 
 
 def _own_descriptor(name: str, views: Sequence[View], points: int, upright: bool) -> Optional[Result]:
-    """:param upright: whether keypoints are described so, as the recommended chain's are, since no image is rotated."""
+    """:param upright: describe keypoints without rotation, as the recommended chain does."""
     cv2 = import_cv2()
     detector = make_detector(name, points)
     if not detector.descriptorSize():
@@ -94,7 +86,7 @@ def _own_descriptor(name: str, views: Sequence[View], points: int, upright: bool
     rows, codes = [], []
     for view in views:
         found = detector.detect(view.image, view.mask)
-        if len(found) > points:  # else in its order, by which equal distances are told apart
+        if len(found) > points:  # else keep the order, which decides between equal distances
             found = sorted(found, key=lambda keypoint: -keypoint.response)[:points]
         for keypoint in found if upright else ():
             keypoint.angle = 0

@@ -31,8 +31,7 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
     class_id). Descriptors are N x ``descriptorSize()`` uint8 arrays for the Hamming distance.
 
     One object may serve several threads as long as none changes its parameters; the GIL is released meanwhile.
-    Mistakes raise :class:`opencv_iib.error`, a TypeError if an argument is no array at all.
-    """
+    Mistakes raise :class:`opencv_iib.error`, a TypeError if an argument is no array at all."""
 
     CHANNEL_GRAD_X, CHANNEL_GRAD_Y, CHANNEL_ORIENTATION = Channel.GRAD_X, Channel.GRAD_Y, Channel.ORIENTATION
     CHANNEL_INTENSITY, CHANNEL_SIGNED_GRAD_X = Channel.INTENSITY, Channel.SIGNED_GRAD_X
@@ -50,15 +49,13 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
                  mapping: int = Mapping.MEAN, overlap: bool = False, useOrientation: bool = False,
                  extraChannels: int = 0) -> None:
         """Creates an extractor.
-
         :param scaleFactor: side of the described square in units of a keypoint's size, > 0; see scaleFactorFor.
         :param granularity: number of levels, 1 to 6.
         :param channels: a sum of CHANNEL_ values; may be 0 if there are extra channels.
         :param mapping: one of MAPPING_.
         :param overlap: slide the windows of 2 x 2 cells by one cell instead of two.
         :param useOrientation: turn the square by a keypoint's angle.
-        :param extraChannels: number of maps that computeWithChannels is given, 0 to 16.
-        """
+        :param extraChannels: number of maps that computeWithChannels is given, 0 to 16."""
         super().__init__(
             number(scaleFactor, 'scaleFactor'), integer(granularity, 'granularity'), integer(channels, 'channels'),
             integer(mapping, 'mapping'), bool(overlap), bool(useOrientation), integer(extraChannels, 'extraChannels'))
@@ -72,13 +69,11 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
 
     @classmethod
     def createPreset(cls, preset: Union[int, str], scaleFactor: Optional[float] = None) -> IIBDescriptorExtractor:
-        """Creates an extractor with a learned selection, for keypoints that you have.
+        """Creates an extractor with a learned selection, for given keypoints.
 
         :param preset: one of PRESET_, of :class:`Preset`, or its name: 'COMPACT'.
-        :param scaleFactor: what the detector's keypoints need, see scaleFactorFor. Without one it is 2, ORB's, and there is
-            a warning, since other detectors' keypoints lose most matches by it: ``createFor(detector, preset)`` knows the
-            detector's own.
-        """
+        :param scaleFactor: that of the keypoints' detector, see scaleFactorFor. None warns and takes ORB's, 2, by which keypoints of other
+            detectors lose most matches. ``createFor(detector, preset)`` knows the detector's own."""
         if scaleFactor is None:
             warnings.warn("createPreset without a scaleFactor takes 2, ORB's: for other keypoints say "
                           "scaleFactor=IIB.scaleFactorFor('AKAZE'), or use createFor(detector, preset)", stacklevel=2)
@@ -87,33 +82,29 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
 
     @classmethod
     def createFor(cls, detector: Any, preset: Union[int, str] = -1) -> IIBDescriptorExtractor:
-        """Creates an extractor for a detector object, of any cv2: with its scale factor, and it detects.
+        """Creates an extractor that detects by a detector of any cv2, and has the scale factor for it.
 
-        :param detector: has ``detect(image, mask)``; its ``getDefaultName()`` or its class's name gives the factor.
-        :param preset: one of PRESET_, of :class:`Preset`, or its name; -1 for the paper's default descriptor.
-        """
+        :param detector: has ``detect(image, mask)``; its ``getDefaultName()`` or its class's name determines the factor.
+        :param preset: one of PRESET_, of :class:`Preset`, or its name; -1 for the paper's default descriptor."""
         extractor = around(cls, cls._createFor(core_detector(detector), integer(preset_number(preset), 'preset')))
         extractor._detector = detector
         return extractor
 
     @classmethod
     def createRecommended(cls, maxFeatures: int = 1000) -> IIBDescriptorExtractor:
-        """What to take first, where light, place or both change: HessianDetector and PRESET_UNIVERSAL.
+        """The recommended detector and descriptor, HessianDetector and PRESET_UNIVERSAL, where light, place or both change.
 
-        ``detectAndCompute`` finds and describes; match with ``HierarchicalMatcher.createRecommended()``. Photographs of many
-        megapixels are searched at a reduced size, see ``HessianDetector.setWorkingSize``.
+        Match their descriptors with ``HierarchicalMatcher.createRecommended()``. Photographs of many megapixels are searched at a reduced
+        size, see ``HessianDetector.setWorkingSize``.
 
-        :param maxFeatures: keypoints of an image, the strongest; 0 keeps all.
-        """
+        :param maxFeatures: keypoints of an image, the strongest; 0 keeps all."""
         return cls.createFor(HessianDetector(maxFeatures), Preset.UNIVERSAL)
 
     @staticmethod
     def scaleFactorFor(detectorName: Any = None, detector: Any = None) -> float:
         """Scale factor for a detector's keypoints.
 
-        :param detectorName: such as 'ORB' or 'AKAZE', any case, or a detector object.
-        :param detector: a detector object, by the name that it has in ``cv2.iib``.
-        """
+        :param detectorName: such as 'ORB' or 'AKAZE', in any case, or a detector object; ``cv2.iib`` calls the latter `detector`."""
         known = detectorName if detector is None else detector
         return _core.IIBDescriptorExtractor._scaleFactorFor(known if isinstance(known, str) else core_detector(known))
 
@@ -125,9 +116,8 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
     def compute(self, image: Any, keypoints: Any) -> Any:
         """Describes keypoints; with a list of images, those of each.
 
-        :return: the keypoints as they were given (those left, if BORDER_DROP removed some), and N x
-            descriptorSize() uint8. Without keypoints, or with an empty image, there are 0 descriptors.
-        """
+        :return: the given keypoints (without those that BORDER_DROP removed), and N x descriptorSize() uint8; N is 0 without keypoints,
+            and for an empty image."""
         if are_images(image):
             return tuple(zip(*(self.compute(*each) for each in with_images(image, keypoints, 'keypoints'))))
         return self.computeWithChannels(image, [], keypoints)
@@ -136,8 +126,7 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
         """Describes keypoints with the image and with further maps of it, such as depth or labels.
 
         :param extraChannels: getExtraChannels() arrays, each H x W, of uint8, uint16 or float32.
-        :return: as compute.
-        """
+        :return: as compute."""
         descriptors, kept = self._compute(as_image(image), as_rows(keypoints), as_arrays(extraChannels, 'an extra channel'))
         if kept is None:
             return keypoints, descriptors
@@ -153,22 +142,20 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
         return self.compute(image, self.detect(image, mask))
 
     def setDetector(self, detector: Any) -> None:
-        """The detector behind detect: any object with ``detect(image, mask)`` that returns keypoints.
+        """Sets the detector of `detect`: any object with ``detect(image, mask)`` that returns keypoints, such as one of cv2.
 
-        It gets arrays of its own and may be of a foreign cv2. The scale factor stays as it is; see createFor.
-        """
+        It gets copies of the arrays. The scale factor stays as it is; see createFor."""
         self._setDetector(core_detector(detector))
         self._detector = detector
 
     def getDetector(self) -> Any:
-        """What setDetector was given; None for the default, the ORB of the OpenCV inside."""
+        """The detector that was set; None for the default, the ORB of the OpenCV inside."""
         return self._detector
 
     def setSelection(self, quads: ArrayLike) -> None:
         """Restricts the descriptor to chosen quads.
 
-        :param quads: Q x 5 int32: level, channel, row, column, bits to keep. Empty: all quads again.
-        """
+        :param quads: Q x 5 int32: level, channel, row, column, bits to keep. Empty: all quads again."""
         self._setSelection(as_matrix(quads, 'the selection'))
 
     def save(self, filename: Path) -> None:
@@ -178,15 +165,12 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
     def write(self, fileName: Path) -> None:
         """Writes the parameters, but not the detector, to a .yml, .xml or .json file, which read() and C++ read.
 
-        A link is followed. An older file is replaced when the new one is whole.
-
-        :raises opencv_iib.error: if it cannot be written whole; an older file is there then as it was. Also for a link that leads to
-            no file, a folder, a device or a pipe.
-        """
+        :raises opencv_iib.error: if the file cannot be written; an older one is kept. Also for a link that leads to no file, a folder, a
+            device or a pipe."""
         self._save(fileName)
 
     def read(self, fileName: Path) -> None:
-        """Reads what write() or C++ wrote, also packed by gzip."""
+        """Reads a file of write() or C++, also packed by gzip."""
         name = os.fsdecode(fileName)
         try:
             with open(name, 'rb') as file:  # OpenCV opens no name beyond Windows' code page or with a '?'

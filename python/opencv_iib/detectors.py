@@ -1,4 +1,4 @@
-"""Detectors of Python, such as those of a foreign cv2, behind the classes of this package; the package's own."""
+"""The detectors of this package, and those of Python or cv2 as the extension calls them."""
 from __future__ import annotations
 
 import weakref
@@ -21,7 +21,7 @@ def _number(detector: Any, method: str) -> int:
 
 
 def core_detector(detector: Any) -> Detector:
-    """What the extension calls: one of this package itself, or one that calls ``detector.detect``."""
+    """A detector as the extension takes it: of this package, or one that calls ``detector.detect``."""
     if isinstance(detector, Detector):
         return detector
     if isinstance(detector, (str, type)):
@@ -29,7 +29,7 @@ def core_detector(detector: Any) -> Detector:
         raise TypeError(f'a detector is needed, not the name of one or a class: pass an object, such as cv2.{name}_create()')
     if not callable(getattr(detector, 'detect', None)):
         raise TypeError(f'a detector has a method detect(image, mask), and {type(detector).__name__} has none')
-    # The object that detects keeps it alive; the garbage collector could not see a reference from within the extension.
+    # Weak, since the garbage collector cannot see references of the extension. The object that detects keeps the detector alive.
     try:
         kept: Callable[[], Any] = weakref.ref(detector)
     except TypeError:  # those of cv2
@@ -43,13 +43,13 @@ def core_detector(detector: Any) -> Detector:
 
 
 def detect_rows(owner: Detector, image: ArrayLike, mask: Optional[ArrayLike]) -> NDArray[np.float32]:
-    """Keypoints of a detector or extractor of this package as N x 7, see keypoints_to_array."""
+    """N x 7 keypoints of a detector or extractor of this package, see keypoints_to_array."""
     allowed = np.empty((0, 0), np.uint8) if mask is None else as_matrix(mask, 'the mask')
     return owner._detect(as_image(image), allowed)
 
 
 def detected(owner: Detector, image: ArrayLike, mask: Optional[ArrayLike]) -> tuple[Any, ...]:
-    """What `detect` of them all is."""
+    """The method `detect` of all detectors and the extractor."""
     if are_images(image):
         given: Any = image
         masks: Any = [None] * len(given) if mask is None else mask
@@ -61,10 +61,8 @@ def detected(owner: Detector, image: ArrayLike, mask: Optional[ArrayLike]) -> tu
 class HessianDetector(_core.HessianDetector):
     """Finds blobs of the locally normalized image: maxima over place and scale of the determinant of its Hessian.
 
-    Names, keywords and keypoints are those of ``cv2.iib``. ``IIB.createRecommended()`` puts it together with the
-    descriptor for it. Images are as IIBDescriptorExtractor takes them. Keypoints come strongest first; their size is twice
-    the sigma of the blob in pixels, their angle -1.
-    """
+    Names, keywords and keypoints are those of ``cv2.iib``. ``IIB.createRecommended()`` combines it with its descriptor. Images are as in
+    IIBDescriptorExtractor. Keypoints come strongest first; their size is twice the sigma of the blob in pixels, their angle -1."""
 
     @classmethod
     def create(cls, maxFeatures: int = 1000, threshold: float = 0.0, scales: int = 5, sigma: float = 2.2,
@@ -88,15 +86,12 @@ class NormalizedDetector(_core.NormalizedDetector):
     """Finds the keypoints of another detector on the locally normalized image, where light changes them less.
 
     Names, keywords and keypoints are those of ``cv2.iib``. Descriptors are best computed on the plain image:
-    ``IIB.createFor(NormalizedDetector(cv2.ORB_create()))`` does so. Images are as IIBDescriptorExtractor takes them.
-    """
+    ``IIB.createFor(NormalizedDetector(cv2.ORB_create()))`` does so. Images are as in IIBDescriptorExtractor."""
 
     def __init__(self, detector: Any, sigma: float = 4.0) -> None:
         """Wraps a detector.
-
         :param detector: of any cv2, or any object with ``detect(image, mask)``.
-        :param sigma: of the Gaussian filter in pixels, 1 to 256.
-        """
+        :param sigma: of the Gaussian filter in pixels, 1 to 256."""
         super().__init__(core_detector(detector), number(sigma, 'sigma'))
         self._detector = detector
 
@@ -106,7 +101,7 @@ class NormalizedDetector(_core.NormalizedDetector):
         return cls(detector, sigma)
 
     def compute(self, image: Any, keypoints: Any) -> Any:
-        """The descriptors of the detector inside, on the plain image: what its own ``compute`` gives."""
+        """Descriptors of the detector inside, on the plain image."""
         if not self.descriptorSize():
             raise _core.error(f'{detector_name(self._detector)} finds keypoints but does not describe them; describe '
                               'them with another object, such as IIBDescriptorExtractor.createFor')
@@ -121,15 +116,15 @@ class NormalizedDetector(_core.NormalizedDetector):
         return self._detector
 
     def descriptorSize(self) -> int:
-        """Of the detector inside; 0 if it describes nothing."""
+        """Bytes of the inner detector's descriptors; 0 if it has none."""
         return _number(self._detector, 'descriptorSize')
 
     def descriptorType(self) -> int:
-        """Of the detector inside."""
+        """The inner detector's type of descriptors."""
         return _number(self._detector, 'descriptorType')
 
     def defaultNorm(self) -> int:
-        """Of the detector inside."""
+        """The inner detector's norm."""
         return _number(self._detector, 'defaultNorm')
 
     def _parameters(self) -> float:

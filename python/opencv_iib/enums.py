@@ -1,19 +1,12 @@
-"""Values of parameters by name; each is the integer of ``cv2.iib`` as well."""
+"""Names of parameters' values; each is also the integer of ``cv2.iib``."""
 from __future__ import annotations
 
-from enum import EnumMeta, IntEnum, IntFlag
+from enum import IntEnum, IntFlag
 from typing import Union
 
 
-class _OnlyMembers(EnumMeta):
-    """help() and dir() show an enum's members, and not the methods of int."""
-
-    def __dir__(cls) -> list[str]:
-        return ['__doc__', '__module__', *cls.__members__]
-
-
-class Channel(IntFlag, metaclass=_OnlyMembers):
-    """What of the image is compared; a sum of these."""
+class Channel(IntFlag):
+    """Channels of the image that are compared; a sum of these."""
 
     GRAD_X = 1
     GRAD_Y = 2
@@ -24,25 +17,25 @@ class Channel(IntFlag, metaclass=_OnlyMembers):
     DEFAULT = 15
 
 
-class Mapping(IntEnum, metaclass=_OnlyMembers):
+class Mapping(IntEnum):
     """How the four cells of a quad become bits."""
 
     MEAN, MAX, MIN, QUARTILE, SORT, HAAR, PAIRWISE, BOXES = range(8)
 
 
-class Border(IntEnum, metaclass=_OnlyMembers):
+class Border(IntEnum):
     """What happens to keypoints whose region leaves the image."""
 
     CLAMP, DROP, REFLECT = range(3)
 
 
-class Orientation(IntEnum, metaclass=_OnlyMembers):
-    """How the described squares are turned."""
+class Orientation(IntEnum):
+    """How the described squares are rotated."""
 
     NONE, KEYPOINT, GRADIENT = range(3)
 
 
-class Preset(IntEnum, metaclass=_OnlyMembers):
+class Preset(IntEnum):
     """Descriptors whose bits were learned.
 
     ========= ===== ==============================================================================================
@@ -56,31 +49,29 @@ class Preset(IntEnum, metaclass=_OnlyMembers):
     COMPACT   64    a still camera, many images to keep
     TINY      32    a still camera, and memory is scarce
     S512      64    the paper's default, shortened; likewise S256 (32 bytes) and S128 (16)
-    ========= ===== ==============================================================================================
-    """
+    ========= ===== =============================================================================================="""
 
     S128, S256, S512, ACCURATE, COMPACT, TINY, BALANCED, VIEWPOINT, UNIVERSAL, SMALL = range(10)
 
 
-class AlignmentModel(IntEnum, metaclass=_OnlyMembers):
+class AlignmentModel(IntEnum):
     """Transforms between two images, each with more freedom than the one before: rotation and scale, shear, perspective. AUTO: the simplest one
     that is true."""
 
     TRANSLATION, SIMILARITY, AFFINE, HOMOGRAPHY, AUTO = range(5)
 
 
-class Mode(IntEnum, metaclass=_OnlyMembers):
+class Mode(IntEnum):
     """How the matcher searches."""
 
     EXACT, THRESHOLD, ADAPTIVE = range(3)
 
 
 def preset_number(preset: Union[int, str]) -> Union[int, str]:
-    """A preset's number, of its name in any case, with PRESET_ before it or without; what is no name stays as it is."""
+    """The number of a preset's name, in any case, with or without PRESET_; other values are returned as they are."""
     if not isinstance(preset, str):
         return preset
-    name = preset.upper()
-    name = name[len('PRESET_'):] if name.startswith('PRESET_') else name
+    name = preset.upper().removeprefix('PRESET_')
     if name not in Preset.__members__:
         raise ValueError(f'there is no preset {preset!r}, but {", ".join(Preset.__members__)}')
     return Preset[name]

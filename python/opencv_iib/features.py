@@ -1,4 +1,4 @@
-"""Keypoints and codes of one image."""
+"""Keypoints and codes of an image."""
 from __future__ import annotations
 
 import dataclasses
@@ -22,22 +22,21 @@ MIN_SIZE = 32  # pixels
 
 
 def preset_names() -> dict[str, int]:
-    """The presets of IIBDescriptorExtractor, without their prefix, and DEFAULT, the paper's."""
+    """Numbers of the presets, and of DEFAULT, the paper's descriptor."""
     return {'DEFAULT': -1, **Preset.__members__}
 
 
 @dataclasses.dataclass(frozen=True)
 class FeatureOptions:
-    """What to find and how to describe it; by default the recommended chain, with more points."""
+    """How images are described; by default by the recommended chain, with more points."""
 
     detector: str = 'HESSIAN'  #: one of DETECTORS: HessianDetector, or one of cv2
     points: int = 4000  #: at most so many keypoints an image, those of the strongest response
     preset: str = 'UNIVERSAL'  #: one of preset_names()
-    #: turn the regions by the keypoints' angles, or by the gradients within them for detectors that tell no angle
-    orientation: bool = False
+    orientation: bool = False  #: rotate regions by the keypoints' angles, or by gradients for detectors without angles
     max_size: int = 0  #: pixels of the longer side to which larger images are reduced; 0: they are not
-    exif: bool = True  #: images are described as upright as their EXIF data say; points stay in the file's pixels
-    mask: Optional[Path] = None  #: what is described, as of images.Masks
+    exif: bool = True  #: rotate images upright by their EXIF data; points stay in the stored pixels
+    mask: Optional[Path] = None  #: a mask, or a folder of masks NAME.png
 
     def __post_init__(self) -> None:
         for field in ('detector', 'preset'):  # in any case, and members of Preset
@@ -47,11 +46,11 @@ class FeatureOptions:
 
     @property
     def are_recommended(self) -> bool:
-        """Whether these are the recommended chain's, of which matchViews makes views."""
+        """Whether these are the recommended chain's, for which matchViews exists."""
         return (self.detector, self.preset, self.orientation, self.max_size) == ('HESSIAN', 'UNIVERSAL', False, 0)
 
     def check(self) -> None:
-        """:raises InvalidOption: naming what is wrong, and what there is."""
+        """:raises InvalidOption: for the first wrong one, with the known ones."""
         check_choice(self.detector, 'detector', DETECTORS)
         check_choice(self.preset, 'preset', preset_names())
         check_count(self.points, 'points')
@@ -59,7 +58,7 @@ class FeatureOptions:
 
 
 def make_detector(name: str, points: int) -> Any:
-    """One of DETECTORS that keeps about so many keypoints, if it can."""
+    """One of DETECTORS, limited to this number of keypoints if it has a limit."""
     if name == 'HESSIAN':
         return HessianDetector(points)
     import cv2
@@ -71,13 +70,13 @@ def make_detector(name: str, points: int) -> Any:
 
 
 def check_max_size(max_size: int) -> None:
-    """:raises InvalidOption: for fewer pixels than show anything."""
+    """:raises InvalidOption: below MIN_SIZE, except for 0."""
     if integer(max_size, 'max_size', 64) and not MIN_SIZE <= max_size:
         raise InvalidOption(f'max_size is {max_size}: it must be at least {MIN_SIZE} pixels, or 0')
 
 
 class Features:
-    """Detects and describes; one object serves all threads, each with a detector of its own."""
+    """Detects and describes. Threads may share it; each gets a detector of its own."""
 
     def __init__(self, options: FeatureOptions) -> None:
         options.check()
@@ -93,7 +92,7 @@ class Features:
         self._local.detector = make_detector(options.detector, options.points)  # raises here, not at the first image
 
     def __call__(self, image: np.ndarray, orientation: int = 1, mask: Optional[np.ndarray] = None) -> tuple[np.ndarray, np.ndarray]:
-        """:param orientation: how the image is stored, by EXIF; so is the mask.
+        """:param orientation: EXIF's, of the image and the mask.
         :return: N x 7 float32 keypoints (see keypoints_to_array), strongest first, and N x bytes codes."""
         turn, image = Turn(orientation, *image.shape[1::-1]), upright(image, orientation)
         if not hasattr(self._local, 'detector'):
@@ -114,9 +113,6 @@ class Features:
 
 
 def to_colmap(rows: np.ndarray) -> np.ndarray:
-    """N x 7 of OpenCV to COLMAP's N x 4 float32: x, y, scale, angle.
-
-    OpenCV's centre of the first pixel is 0, COLMAP's .5; a diameter becomes a radius, degrees radians (upright: 0).
-    """
+    """Converts N x 7 of OpenCV to COLMAP's N x 4 float32: x, y (the centre of the first pixel is .5), radius, angle in radians."""
     angles = np.where(rows[:, 3] < 0, 0, np.deg2rad(rows[:, 3]))
     return np.stack([rows[:, 0] + .5, rows[:, 1] + .5, rows[:, 2] / 2, angles], axis=1).astype(np.float32)

@@ -14,7 +14,7 @@ from opencv_iib.matcher import HierarchicalMatcher
 
 
 class Features(NamedTuple):
-    """What :func:`detect_and_describe` finds, a row a keypoint, the strongest first."""
+    """The result of :func:`detect_and_describe`, a row a keypoint, the strongest first."""
 
     points: NDArray[np.float32]  #: N x 2: x, y in pixels, the centre of the first pixel is 0
     sizes: NDArray[np.float32]  #: N: diameters in pixels
@@ -22,21 +22,20 @@ class Features(NamedTuple):
 
 
 class Matches(NamedTuple):
-    """What :func:`match` finds, a row a match."""
+    """The result of :func:`match`, a row a match."""
 
     pairs: NDArray[np.int32]  #: M x 2: rows of both arrays of codes
-    distances: NDArray[np.int32]  #: M: bits that differ
+    distances: NDArray[np.int32]  #: M: different bits
 
 
 def detect_and_describe(image: ArrayLike, n: int = 1000, mask: Optional[ArrayLike] = None, orientation: int = 1) -> Features:
     """Finds and describes the n strongest points of an image: ``IIB.createRecommended(n)``.
 
-    :param image: as IIBDescriptorExtractor takes it.
+    :param image: as in IIBDescriptorExtractor.
     :param n: 0 keeps all.
-    :param mask: H x W uint8, 0 where nothing is to be found.
-    :param orientation: how the image is stored, by EXIF, 1 to 8: it is described upright, the points are those of the array.
-    :raises opencv_iib.error: for an image of another type, a mask of another size, and n below 0.
-    """
+    :param mask: H x W uint8, 0 where no points may be found.
+    :param orientation: EXIF's, 1 to 8: the image is described upright; points are those of the array.
+    :raises opencv_iib.error: for an image of another type, a mask of another size, and n below 0."""
     iib = IIBDescriptorExtractor.createRecommended(n)
     stored = as_image(image)
     turned = upright(stored, orientation)
@@ -51,8 +50,7 @@ def match(a: ArrayLike, b: ArrayLike, matcher: Optional[HierarchicalMatcher] = N
     :param a: N x bytes uint8, of any binary descriptor.
     :param b: M x bytes uint8.
     :param matcher: None for ``HierarchicalMatcher.createRecommended()``.
-    :raises opencv_iib.error: for codes of other numbers than uint8, or of two widths.
-    """
+    :raises opencv_iib.error: for codes of other numbers than uint8, or of two widths."""
     nearest, distances = (matcher or HierarchicalMatcher.createRecommended()).knnMatchArrays(a, b)
     queries, _ = found = np.nonzero(nearest >= 0)
     return Matches(np.stack([queries.astype(np.int32), nearest[found]], axis=1), distances[found])

@@ -1,4 +1,4 @@
-"""Where a second camera stands, and where a second image lies."""
+"""The pose between two cameras, and the transform between two images."""
 from __future__ import annotations
 
 from typing import Any, NamedTuple, Optional
@@ -21,10 +21,10 @@ class _Pose(NamedTuple):
 
 
 class RelativePose(_Pose):
-    """What :func:`findRelativePose` returns, a tuple (found, R, t, inliers, covariance).
+    """The result of :func:`findRelativePose`, a tuple (found, R, t, inliers, covariance).
 
-    R is 3 x 3, from the axes of camera 1 to those of camera 2; t 3 x 1, of length 1, the direction of the translation in the axes of camera 2;
-    the covariance 5 x 5, radians, of the rotation and of the direction of t. All three are None if no pose is found. The inliers are N x 1,
+    R is 3 x 3, from the axes of camera 1 to those of camera 2; t is 3 x 1, the direction of the translation in the axes of camera 2, of length 1;
+    the covariance is 5 x 5, radians, of the rotation and of the direction of t. All three are None if no pose is found. The inliers are N x 1,
     1 for matches that agree.
     """
 
@@ -58,21 +58,17 @@ def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:
 
 def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: ArrayLike, cameraMatrix2: ArrayLike,
                      scale: float = 0, covariances: Optional[ArrayLike] = None) -> RelativePose:
-    """Finds where camera 2 stands, seen from camera 1, from matched points of which many may be wrong.
+    """Finds the pose of camera 2 relative to camera 1 from matches, of which many may be wrong, as ``cv2.iib.findRelativePose``.
 
-    As ``cv2.iib.findRelativePose``. Points must be free of lens distortion:
-    ``cv2.undistortPoints(points, K, distortion, P=K)`` first.
+    Points must be free of lens distortion: call ``cv2.undistortPoints(points, K, distortion, P=K)`` first.
 
-    :param points1: N x 2: pixels of image 1.
-    :param points2: N x 2: their matches in image 2.
-    :param cameraMatrix1: 3 x 3, [fx 0 cx; 0 fy cy; 0 0 1], of camera 1.
-    :param cameraMatrix2: of camera 2.
-    :param scale: pixels: about the standard deviation of the points; 0: the residuals tell it.
-    :param covariances: N x 3, pixels^2: of the places of the matches, xx, xy, yy, as refineMatches and propagateMatches give them. A match that
-        was located less exactly counts less in the choice among poses.
-    :return: a tuple (found, R, t, inliers, covariance), with its `reason`. Not found: the matches that agree could be random, or
-        two poses explain them as well, as of a plane.
-    :raises opencv_iib.error: for arrays of other shapes, points that are not one for one, and a scale below 0.
+    :param points1: N x 2, pixels of image 1; so are their matches `points2` in image 2.
+    :param cameraMatrix1: 3 x 3, [fx 0 cx; 0 fy cy; 0 0 1], of camera 1; so is `cameraMatrix2` of camera 2.
+    :param scale: standard deviation of the points in pixels, roughly; 0: estimated from the residuals.
+    :param covariances: N x 3, xx, xy, yy of the matches in squared pixels, as of refineMatches and propagateMatches. Less exact matches have less
+        weight in the choice among poses.
+    :return: with its `reason`. Not found: the inliers could be random, or two poses explain them equally well, as for a plane.
+    :raises opencv_iib.error: for arrays of other shapes or lengths, and a scale below 0.
     """
     rows = np.empty((0, 3)) if covariances is None else _numbers(covariances, 'covariances')
     pose, reason = _core.findRelativePose(_numbers(points1, 'points1'), _numbers(points2, 'points2'), _numbers(cameraMatrix1, 'cameraMatrix1'),
@@ -129,15 +125,14 @@ class ImageAligner:
 
 
 def logFalseAlarms(points1: ArrayLike, points2: ArrayLike, inliers: ArrayLike, epipolar: bool, threshold: float) -> float:
-    """Whether matches agree with a fundamental matrix or a homography by more than chance, as ``cv2.iib.logFalseAlarms``.
+    """Whether inliers of a fundamental matrix or a homography are significant, as ``cv2.iib.logFalseAlarms``.
 
-    :param points1: N x 2: pixels of image 1, of right and wrong matches.
-    :param points2: N x 2: their matches in image 2.
-    :param inliers: N marks, not 0 for matches that agree, such as ``cv2.findHomography`` gives.
-    :param epipolar: whether they agree with a fundamental matrix, in place of a homography.
-    :param threshold: pixels: the largest distance of a match that agrees.
-    :return: logarithm to base 10 of the number of models that agree as well by chance; above -3 it may be chance.
-    :raises opencv_iib.error: for arrays of other shapes, and a threshold that is not above 0.
+    :param points1: N x 2, pixels of image 1, of right and wrong matches; so are their matches `points2` in image 2.
+    :param inliers: N marks, not 0 for inliers, as of ``cv2.findHomography``.
+    :param epipolar: the model is a fundamental matrix, not a homography.
+    :param threshold: pixels: the largest distance of an inlier.
+    :return: logarithm to base 10 of the expected number of models with as many random inliers; above -3 it is not significant.
+    :raises opencv_iib.error: for arrays of other shapes, and a threshold of 0 or less.
     """
     given = as_array(inliers, 'inliers')
     if given.size != max(given.shape, default=0):
@@ -148,11 +143,11 @@ def logFalseAlarms(points1: ArrayLike, points2: ArrayLike, inliers: ArrayLike, e
 
 
 def confidenceLimit(probability: float, dimensions: int) -> float:
-    """How far off an estimate may be, as ``cv2.iib.confidenceLimit``: the limit of error @ inv(covariance) @ error within which errors of poses,
-    alignments and refined points lie with this probability. They are Student's t with two degrees of freedom, not Gaussian.
+    """The limit of error @ inv(covariance) @ error that errors of poses, alignments and refined points keep with this probability, as
+    ``cv2.iib.confidenceLimit``. The errors are distributed as Student's t with two degrees of freedom.
 
     :param probability: 0 or more and below 1.
-    :param dimensions: 1 or more: numbers in an error, such as 3 of a rotation, 2 of a direction or of a point.
+    :param dimensions: 1 or more, of the error: 3 for a rotation, 2 for a direction or a point.
     :raises opencv_iib.error: for other values.
     """
     return float(_core.confidenceLimit(number(probability, 'probability'), integer(dimensions, 'dimensions')))

@@ -1,4 +1,4 @@
-"""MappedIndex: codes in a folder, searched where they lie."""
+"""MappedIndex: codes in a folder, mapped into memory."""
 from __future__ import annotations
 
 import os
@@ -18,14 +18,13 @@ from opencv_iib.matcher import AT_ONCE, check_padding
 class MappedIndex(_core.MappedIndex):
     """Binary codes in a folder of files that are mapped into memory, as C++'s cv::iib::MappedIndex writes and reads them.
 
-    For more codes than memory should hold, for several processes that search the same codes, and for programs that should
-    be ready at once. Each call of :meth:`add` or :meth:`remove` is one commit: whatever fails, the folder stays as it was
-    before. Writers wait for each other; readers see the commit that they opened until :meth:`refresh`. Rows and images
-    are numbered in the order in which they were added, and keep their numbers when others are removed.
+    For more codes than fit in memory, for processes that share codes, and for programs that start at once. Each call of :meth:`add` or
+    :meth:`remove` is one commit: if it fails, the folder stays as it was. Writers wait for each other; readers see the commit that they
+    opened until :meth:`refresh`. Rows and images are numbered in the order in which they were added, and keep their numbers when others
+    are removed.
 
     A file that is missing, truncated or altered raises :class:`opencv_iib.error`, which names it. Searches release the
-    GIL; threads may share an object as long as none adds, removes or refreshes. A pickle holds the folder's name alone.
-    """
+    GIL; threads may share an object as long as none adds, removes or refreshes. A pickle holds the folder's name alone."""
 
     def __init__(self, folder: Path) -> None:
         """As :meth:`open`."""
@@ -34,15 +33,14 @@ class MappedIndex(_core.MappedIndex):
 
     @classmethod
     def open(cls, folder: Path) -> MappedIndex:
-        """Opens the last commit; the codes are mapped when they are first searched, and then checked once."""
+        """Opens the last commit; codes are mapped and checked at the first search."""
         return cls(folder)
 
     @classmethod
     def create(cls, folder: Path, levelSizes: Sequence[int]) -> MappedIndex:
-        """Makes a folder, whose parent has to exist, or takes an empty one, with an index without images.
+        """Makes an index without images in a new folder, whose parent must exist, or in an empty one.
 
-        :param levelSizes: bytes of each level, coarse first, as of HierarchicalMatcher; one level is enough.
-        """
+        :param levelSizes: bytes of each level, coarse first, as in HierarchicalMatcher; one level is enough."""
         cls._create(folder, integers(levelSizes, 'levelSizes'))
         return cls(folder)
 
@@ -65,8 +63,7 @@ class MappedIndex(_core.MappedIndex):
     def add(self, descriptors: ArrayOrArrays) -> None:
         """Adds the descriptors of one image (an array) or of several (a sequence of arrays), and commits them.
 
-        They become one file. Add many images at once: searches like files of 100,000 rows and more.
-        """
+        They become one file. Add many images at once: files of 100,000 rows and more are searched fastest."""
         self._add(as_arrays(descriptors, 'descriptors', as_codes))
 
     def search(self, queryDescriptors: ArrayLike, k: int = 1, segment: Optional[int] = None
@@ -75,8 +72,7 @@ class MappedIndex(_core.MappedIndex):
 
         :param segment: the number of the only file to search.
         :return: rows (int64) and distances (int32), queries x k, -1 where there are fewer.
-        :raises opencv_iib.error: also for a k of more than there are codes that would fill the memory.
-        """
+        :raises opencv_iib.error: also for a k of more than there are codes that would fill the memory."""
         queries, k, where = as_codes(queryDescriptors, 'queries'), integer(k, 'k'), -1 if segment is None else integer(segment, 'segment')
         check_padding(len(queries), k, self.rows)
         parts = [self._search(queries[first:first + AT_ONCE], k, where) for first in range(0, max(1, len(queries)), AT_ONCE)]

@@ -1,4 +1,4 @@
-"""Many pairs of images, each matched as by match_images: a folder of tables, or a file as hloc reads it."""
+"""Matches pairs of a list as match_images does, to a folder of tables or a file that hloc reads."""
 from __future__ import annotations
 
 import collections
@@ -22,7 +22,7 @@ from opencv_iib._images import find_images
 from opencv_iib._pairs import check_list, pair_name, tiles
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._partial import LOGS, close_partial, open_partial
-from opencv_iib._progress import Progress
+from opencv_iib._progress import with_progress
 from opencv_iib._streams import note
 from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.measure import Measured, View, measure
@@ -31,8 +31,8 @@ HDF5 = ('.h5', '.hdf5')
 TABLE, PARTIAL = 'pairs.csv', '.partial'
 COLUMNS = ['image_a', 'image_b', 'found', 'reason', 'matches', 'agree', 'rotation', *(f'r{row}{column}' for row in '123' for column in '123'),
            't1', 't2', 't3', 'files', 'settings']
-FOUND, MARK = 2, slice(-2, None)  # of a row; a pair of the same mark is not matched again
-IMAGES_HELD = 32  # whose pixels are kept, of those that were described
+FOUND, MARK = 2, slice(-2, None)  # columns; a pair whose mark is the same is not matched again
+IMAGES_HELD = 32  # described images whose pixels are kept
 Row = list[str]  # of COLUMNS
 
 
@@ -44,7 +44,7 @@ def _row(a: str, b: str, measured: Measured, mark: Row) -> Row:
 
 
 class _State(contextlib.AbstractContextManager['_State']):
-    """What was measured and is not yet in its place, by the pairs' names."""
+    """Results that are not exported yet, by the pairs' names."""
 
     def __init__(self, path: str) -> None:
         self._path, self._db, self.exported = path, open_partial(path, 'iib_pairs'), False
@@ -80,7 +80,7 @@ class _Folder(Results):
             self.rows = {pair_name(*row[:2]): row for row in rows if head == COLUMNS and len(row) == len(COLUMNS)}
 
     def has(self, name: str) -> bool:
-        """Whether the pair's file is there. :raises OSError: for a name that is too long."""
+        """Whether the pair's file exists. :raises OSError: for a name that is too long."""
         for part in (name + '.csv').split('/'):
             with contextlib.suppress(FileNotFoundError):
                 os.lstat(os.path.join(self.folder, part))
@@ -89,13 +89,13 @@ class _Folder(Results):
     def content(self, measured: Measured) -> bytes:
         return measured.content()
 
-    def export(self, state: _State, gone: Collection[str]) -> None:
+    def export(self, state: _State, removed: Collection[str]) -> None:
         for name, content in state.contents():
             write_whole(self.place(name + '.csv'), content)
         text = io.StringIO(newline='')
-        csv.writer(text).writerows([COLUMNS, *(row for name, row in {**self.rows, **state.rows()}.items() if name not in gone)])
+        csv.writer(text).writerows([COLUMNS, *(row for name, row in {**self.rows, **state.rows()}.items() if name not in removed)])
         write_whole(self.place(TABLE), text.getvalue().encode())
-        self.written -= {name + '.csv' for name in gone}
+        self.written -= {name + '.csv' for name in removed}
 
 
 class _Hdf5:
@@ -121,7 +121,7 @@ class _Hdf5:
                     self.rows[name] = ['', '', f'{known["found"]:d}', *known['mark']]
 
     def _names(self) -> list[str]:
-        """Of pairs, and of what the user may have added."""
+        """Names of pairs, and of groups that the user has added."""
         return [name for first, group in self._old.items() for name in ([f'{first}/{each}' for each in group] if hasattr(group, 'keys') else [first])]
 
     def has(self, name: str) -> bool:
@@ -134,12 +134,12 @@ class _Hdf5:
                  scores=measured.matches.similarities.ravel().clip(0), covariances=measured.matches.covariances, agrees=measured.agree, **posed)
         return arrays.getvalue()
 
-    def export(self, state: _State, gone: Collection[str]) -> None:
+    def export(self, state: _State, removed: Collection[str]) -> None:
         rows = state.rows()
         with replaced(self._path) as (part,), new_hdf5(part) as file:
             file.attrs['opencv_iib'] = 'match'
             for name in self._names():
-                if name not in rows and name not in gone:
+                if name not in rows and name not in removed:
                     self._old.copy(name, file.require_group(os.path.dirname(name) or '/'))
             for name, content in state.contents():
                 group, row = file.create_group(name), dict(zip(COLUMNS, rows[name]))
@@ -151,24 +151,23 @@ class _Hdf5:
 
 def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera] = None, options: FeatureOptions = FeatureOptions(),
                workers: Optional[int] = None, log: Callable[[str], None] = note) -> tuple[int, int]:
-    """Matches pairs of a list as match_images does, and describes each image once. Until all are done, each pair is kept in a file of SQLite,
-    ``pairs.csv.partial`` in the folder or ``X.h5.partial``: a later call goes on from there, and does what is new or was changed, or was matched
-    with other options. Pairs of images that cannot be read any more are removed.
+    """Matches pairs of a list as match_images does, and describes each image once. Finished pairs are kept in a file of SQLite,
+    ``pairs.csv.partial`` in the folder or ``X.h5.partial``: a later call continues from there, and matches pairs that are new, were changed or were
+    matched with other options. Pairs of images that cannot be read any more are removed.
 
     :param pairs: text file of two names a line, as COLMAP and hloc write it.
     :param images: folder that the names are relative to.
-    :param out: folder for a CSV file a pair, ``A/B.csv`` (a / in names is a -), and ``pairs.csv``, with verdicts and poses; or a name in .h5
-        or .hdf5, of a group a pair as in hloc's dense matches.
-    :param camera: of all images, as match_images takes it.
+    :param out: folder for a CSV file a pair, ``A/B.csv`` (a / in names is a -), and ``pairs.csv``, with verdicts and poses; or a file in .h5
+        or .hdf5, with a group a pair as in hloc's dense matches.
+    :param camera: of all images, as in match_images.
     :param workers: threads; None for one a core.
-    :param log: gets a line of each image that cannot be read and of each line of the list that is not of two images, which are left out.
-    :return: how many pairs show the same, and of how many, with those that are left out.
+    :param log: gets a line about each unreadable image and each line of the list that is not of two images, which are left out.
+    :return: how many pairs show the same, and how many there are, including those that are left out.
     :raises ValueError: for a list without a pair of the folder's images.
-    :raises FileExistsError: for a file or a folder that is of something else.
-    :raises OSError: if another process is writing it.
-    """
+    :raises FileExistsError: for another file or folder at `out`.
+    :raises OSError: if another process is writing it."""
     options.check()
-    crew, masks, features, folder, out = Threads(thread_count(workers)), Masks(options.mask), Features(options), os.fspath(images), os.fspath(out)
+    pool, masks, features, folder, out = Threads(thread_count(workers)), Masks(options.mask), Features(options), os.fspath(images), os.fspath(out)
     lens = None if camera is None else as_camera(camera)
     check_is_folder(folder)
     is_hdf5 = out.lower().endswith(HDF5)
@@ -188,13 +187,13 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
     settings = json.dumps([*(str(value) for name, value in vars(options).items() if name != 'mask'), str(lens), __version__])
     stamps = {name: masks.stamp(os.path.join(folder, name), name) for name in used}
     marks = {pair: [f'{stamps[names[pair[0]]]} {stamps[names[pair[1]]]}', settings] for pair in labels}
-    views, found, logged, gone, missing = _Views(folder, masks, features, lens), 0, set[str](), list[str](), []
+    views, found, logged, removed, missing = _Views(folder, masks, features, lens), 0, set[str](), list[str](), []
 
     def fail(label: str, why: str) -> None:
         if why not in logged:
             log(why)
         logged.add(why)
-        gone.append(label)
+        removed.append(label)
 
     file = output_file(out) if is_hdf5 else os.path.join(os.path.realpath(out), TABLE)
     with contextlib.ExitStack() as stack:
@@ -215,9 +214,9 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
                     missing.append(pair)
             except OSError as e:
                 fail(label, f'{label}.csv cannot be written: {e.strerror}')
-        progress = Progress('matching', len(listed), len(listed) - len(missing))
         ordered = [pair for tile in tiles(missing, IMAGES_HELD // 4) for pair in tile]  # so that images are held as long as they are needed
-        for pair, result in in_parallel(lambda pair: measure(views.of(names[pair[0]]), views.of(names[pair[1]]), features), ordered, crew, (Exception,)):
+        results = in_parallel(lambda pair: measure(views.of(names[pair[0]]), views.of(names[pair[1]]), features), ordered, pool, (Exception,))
+        for pair, result in with_progress(results, 'matching', len(listed), len(listed) - len(missing)):
             if isinstance(result, ImportError):
                 raise result
             if isinstance(result, Exception):
@@ -226,25 +225,22 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
             else:
                 state.put(labels[pair], _row(names[pair[0]], names[pair[1]], result, marks[pair]), target.content(result))
                 found += result.found
-            progress.step()
-        progress.close()
-        if state.rows() or not target.rows.keys().isdisjoint(gone) or not os.path.exists(file):
-            target.export(state, gone)
+        if state.rows() or not target.rows.keys().isdisjoint(removed) or not os.path.exists(file):
+            target.export(state, removed)
             state.exported = True
     return found, len(listed) + left_out
 
 
 class _Views:
-    """Images, each described once. Threads share it."""
+    """Images, each described once. Threads may share it."""
 
     def __init__(self, folder: str, masks: Masks, features: Features, lens: Optional[Camera]) -> None:
         self._folder, self._arguments = folder, (masks, features, lens)
         self._locks: collections.defaultdict[str, threading.Lock] = collections.defaultdict(threading.Lock)
         self._described: dict[str, tuple[np.ndarray, np.ndarray]] = {}
-        self._held: dict[str, View] = {}  # the last ones, in the order of their use
+        self._held: dict[str, View] = {}  # least recently used first
 
     def of(self, name: str) -> View:
-        """Raises as View.of."""
         with self._locks[name]:
             view = self._held.pop(name, None) or View.of(os.path.join(self._folder, name), *self._arguments, name, self._described.get(name))
             self._described[name] = view.rows, view.codes

@@ -1,4 +1,4 @@
-"""Matches of two images to a fraction of a pixel, and the pose between their cameras."""
+"""Matches two images to a fraction of a pixel, and finds the pose between their cameras."""
 from __future__ import annotations
 
 import copy
@@ -28,53 +28,52 @@ from opencv_iib.refinement import PropagatedMatches, RefinedMatches, prepared, p
 from opencv_iib.rotation import matchRotated
 from opencv_iib.views import match_stored, rotation_and_scale, similarity
 
-COMPARED = .25  # pixels: one scale of poses whose matches are counted, since under scales of their own the looser one has more
-CERTAIN = 200  # matches that agree without a pose: fewer may be wrong together
+COMPARED = .25  # pixels: the scale at which inliers of two poses are compared, since at their own scales the looser pose has more
+CERTAIN = 200  # inliers without a pose that need no second try: fewer may be wrong together
 SUFFIXES = '.csv', '.json', '.npz'
 COLUMNS = ('x1', 'y1', 'x2', 'y2', 'xx', 'xy', 'yy', 'similarity', 'bits')
 
 
 class Measured(NamedTuple):
-    """What :func:`match_images` finds."""
+    """The result of :func:`match_images`."""
 
     matches: RefinedMatches
-    bits: NDArray[np.int32]  #: of each match, that differ; -1 where the images were matched in views of them
+    bits: NDArray[np.int32]  #: different bits of each match; -1 where simulated views were matched
     pose: Optional[RelativePose]  #: None without cameras
-    found: bool  #: there is a pose, or without cameras more matches than chance may give agree with one epipolar geometry or homography
+    found: bool  #: there is a pose; without cameras: the matches that agree with an epipolar geometry or homography are significant
     view: NDArray[np.float64]  #: 3 x 3: approximate affine map from pixels of the first image to pixels of the second
-    rotation: float = 0  #: degrees by which the second image is rotated against the first, clockwise, besides EXIF's orientation; 0: less than 8
-    scale: float = 1  #: of the second image's pixels by the first's; 1: less than a fifth more or less
+    rotation: float = 0  #: degrees, clockwise, of the second image against the first, besides EXIF's orientation; 0: less than 8
+    scale: float = 1  #: size in the second image by that in the first; 1: within a fifth
 
     @property
     def refined(self) -> NDArray[np.bool_]:
-        """Of each match, whether it could be refined."""
+        """Whether each match could be refined."""
         return self.matches.similarities >= 0
 
     @property
     def agree(self) -> NDArray[np.bool_]:
-        """Of each match, whether it agrees with the pose; without cameras, whether it could be refined."""
+        """Whether each match agrees with the pose; without cameras, whether it could be refined."""
         return self.refined if self.pose is None else (self.pose.inliers.ravel() > 0) & self.pose.found
 
     @property
     def deviations(self) -> NDArray[np.float64]:
-        """Of each match, the standard deviation of its second point in pixels, a mean over both axes."""
+        """The standard deviation of each match's second point in pixels, a mean over both axes."""
         return np.sqrt(self.matches.covariances[:, ::2].mean(axis=1))
 
     def save(self, file: Path) -> None:
-        """Writes matches and pose to a file that is replaced when the new one is whole, by its suffix: .csv, .json or .npz; CSV to standard
-        output ('-') and to devices.
+        """Writes matches and pose to a file in .csv, .json or .npz; as CSV to standard output ('-') and devices.
 
         A row a match: both points in pixels (the centre of the first pixel is 0), the covariance of the second, the patches'
-        correlation (-1: not refined), bits that differ, with cameras whether it agrees with the pose, and `found`. JSON and NPZ have `found`,
-        the view, the rotation, the scale and the pose too; in JSON it is null without cameras, the view where not found, as is a number that is not finite, and ``matches`` are objects.
+        correlation (-1: not refined), different bits, with cameras whether it agrees with the pose, and `found`. JSON and NPZ also have `found`,
+        view, rotation, scale and pose. In JSON ``matches`` are objects; the pose is null without cameras, the view if not found, and numbers that
+        are not finite.
 
-        :raises InvalidOption: for another suffix.
-        """
+        :raises InvalidOption: for another suffix."""
         check_suffix(file)
         write_whole(os.fspath(file), self.content(os.path.splitext(os.fspath(file))[1].lower()))
 
     def content(self, suffix: str = '') -> bytes:
-        """What `save` writes to a file of this suffix."""
+        """The content of a file with this suffix."""
         pose: Optional[dict[str, Any]] = None
         table = np.column_stack([self.matches.points1, self.matches.points2, self.matches.covariances, self.matches.similarities, self.bits])
         rows = [[f'{value:.10g}' for value in row] for row in table.astype(float).tolist()]
@@ -102,7 +101,7 @@ class Measured(NamedTuple):
         if self.found and (self.rotation, self.scale) != (0, 1):
             text += f', the second image has scale {self.scale:.2f} and is rotated by {round(self.rotation) % 360} degrees'
         if self.pose is None:
-            return text + '\nthese may not show the same: no more matches agree with one geometry than chance may give' * (not self.found)
+            return text + '\nthese may not show the same: their matches could be random' * (not self.found)
         if not self.pose.found:
             return f'{text}\nno pose: {self.pose.reason}'.replace('no pose: no pose', 'no pose')
         turn, towards = import_cv2().Rodrigues(self.pose.R)[0].ravel(), -self.pose.R.T @ self.pose.t.ravel()
@@ -113,14 +112,14 @@ class Measured(NamedTuple):
 
 
 def check_suffix(path: Path) -> None:
-    """:raises InvalidOption: for a file of a suffix that Measured.save does not know."""
+    """:raises InvalidOption: for a suffix that Measured.save does not know."""
     name = os.fspath(path)
     if not (is_open_file(name) or name.lower().endswith(SUFFIXES)):
         raise InvalidOption(f'{name}: end its name in {", ".join(SUFFIXES[:-1])} or {SUFFIXES[-1]}')
 
 
 def _finite(array: NDArray[Any]) -> Any:
-    """As lists, with None for the numbers that JSON has not."""
+    """Nested lists, with None for numbers that are not finite, which JSON lacks."""
     numbers = array.astype(object)
     numbers[~np.isfinite(array)] = None
     return numbers.tolist()
@@ -128,31 +127,20 @@ def _finite(array: NDArray[Any]) -> Any:
 
 def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, picture: Optional[Path] = None,
                  cameras: Sequence[AnyCamera] = (), options: FeatureOptions = FeatureOptions()) -> Measured:
-    """Matches two images by the recommended chain, refines the matches, adds those they lead to, and with cameras finds the pose
-    between them.
+    """Matches two images by the recommended chain, refines and propagates the matches, and with cameras finds the pose between them.
 
-    :param out: file to write, as :meth:`Measured.save` does.
+    :param out: file to write, see :meth:`Measured.save`.
     :param picture: picture to write.
-    :param cameras: one for both images, or one each: ``'MODEL,WIDTH,HEIGHT,PARAMS'`` with COLMAP's names and parameters, or as
-        :meth:`opencv_iib.localization.Localizer.localize` takes it.
-    :raises ValueError: for a file that is no image, a camera of another size, or a suffix of `out` that is none of these.
-    :raises FileExistsError: for an image as a file to write.
-    :raises FileNotFoundError: for an image that is not there.
-    """
+    :param cameras: one for both images, or one each: ``'MODEL,WIDTH,HEIGHT,PARAMS'`` with COLMAP's names and parameters, or as in
+        :meth:`opencv_iib.localization.Localizer.localize`.
+    :raises ValueError: for a file that is no image, a camera of another size, or another suffix of `out`.
+    :raises FileExistsError: if a file to write is an image.
+    :raises FileNotFoundError: for a missing image."""
     options.check()
     cameras = sequence(cameras, 'cameras', 'cameras')
     if len(cameras) > 2:
         raise InvalidOption(f'{len(cameras)} cameras for two images')
-    masks, features, paths = Masks(options.mask), Features(options), [os.fspath(image_a), os.fspath(image_b)]
-    check_images(*paths)
-    masked = masks.check([os.path.basename(path) for path in paths])
-    check_outputs([path for path in (out, picture) if path is not None], (*paths, *masked))
-    if out is not None:
-        check_suffix(out)
-    if picture is not None:
-        check_picture(picture)
-    lenses = [as_camera(camera) for camera in (cameras[0], cameras[-1])] if len(cameras) else [None, None]
-    views = [View.of(path, masks, features, lens, os.path.basename(path)) for path, lens in zip(paths, lenses)]
+    views, features = read_pair((image_a, image_b), out, picture, options, [as_camera(camera) for camera in (cameras[:1] + cameras[-1:])])
     measured = measure(views[0], views[1], features)
     if out is not None:
         measured.save(out)
@@ -164,22 +152,22 @@ def match_images(image_a: Path, image_b: Path, out: Optional[Path] = None, pictu
 
 
 class View(NamedTuple):
-    """An image, and what is found in it."""
+    """An image with its keypoints."""
 
-    stored: np.ndarray  #: as its file has it, BGR
-    image: np.ndarray  #: as people see it
-    mask: Optional[np.ndarray]  #: of that
+    stored: np.ndarray  #: the pixels of its file, BGR
+    image: np.ndarray  #: upright
+    mask: Optional[np.ndarray]  #: of the upright image
     turn: Turn
-    lens: Optional[Camera]  #: of the file
+    lens: Optional[Camera]  #: of the stored image
     rows: np.ndarray  #: keypoints of the upright image
     codes: np.ndarray
 
     @classmethod
     def of(cls, path: str, masks: Masks, features: Features, lens: Optional[Camera], name: str,
            described: Optional[tuple[np.ndarray, np.ndarray]] = None) -> View:
-        """:param name: by which it has its mask.
+        """:param name: the image's name among the masks.
         :param described: its rows and codes, if they are known.
-        :raises ValueError: for a file that is no image, or of another size than its camera's or its mask."""
+        :raises ValueError: for a file that is no image, or has another size than its camera or mask."""
         try:
             file = ImageFile(path, features.options.exif)
             stored, orientation = file.colour, file.orientation if lens is None else file.orientation_of_camera
@@ -197,8 +185,22 @@ class View(NamedTuple):
         return cls(stored, image, mask, Turn(orientation, width, height), lens, *described)
 
 
+def read_pair(images: Sequence[Path], out: Optional[Path], picture: Optional[Path], options: FeatureOptions,
+              lenses: Sequence[Optional[Camera]] = ()) -> tuple[list[View], Features]:
+    """Checks two images and the files to write, and describes the images."""
+    check_images(*images)
+    masks, features, paths = Masks(options.mask), Features(options), [os.fspath(path) for path in images]
+    names = [os.path.basename(path) for path in paths]
+    check_outputs([path for path in (out, picture) if path is not None], (*paths, *masks.check(names)))
+    if out is not None:
+        check_suffix(out)
+    if picture is not None:
+        check_picture(picture)
+    return [View.of(path, masks, features, lens, name) for path, lens, name in zip(paths, lenses or (None, None), names)], features
+
+
 def measure(first: View, second: View, features: Features) -> Measured:
-    """What match_images does, of images that were described by these features."""
+    """Does what match_images does, for images that were described by these features."""
     pair = _Pair(first, second)
     measured = pair.measured((first.rows, second.rows), (first.codes, second.codes), match(first.codes, second.codes).pairs)
     certain = measured.found and (measured.pose is not None or measured.agree.sum() >= CERTAIN) and (measured.rotation, measured.scale) == (0, 1)
@@ -206,12 +208,12 @@ def measure(first: View, second: View, features: Features) -> Measured:
         return measured
     if not features.options.are_recommended:
         return measured if measured.found else pair.rotated(features, measured)
-    seen = pair.seen(features.options.points)
-    return seen if seen.found and (not measured.found or seen.agree.sum() > measured.agree.sum()) else measured
+    by_views = pair.by_views(features.options.points)
+    return by_views if by_views.found and (not measured.found or by_views.agree.sum() > measured.agree.sum()) else measured
 
 
 class _Pair:
-    """Two images as people see them, and the cameras of their files, if these are known."""
+    """Two upright images, and the cameras of the stored ones, if these are known."""
 
     def __init__(self, *views: View) -> None:
         self.images, self._masks, self._turns = zip(*((view.image, view.mask, view.turn) for view in views))
@@ -220,12 +222,12 @@ class _Pair:
         self.lenses = [view.lens for view in views if view.lens is not None]
 
     def measured(self, rows: Sequence[np.ndarray], codes: Sequence[np.ndarray], given: np.ndarray) -> Measured:
-        """From keypoints of the upright images, their codes and matches of them."""
+        """The result of keypoints of the upright images, their codes and matches."""
         propagated, count = self._propagated(rows, given)
         pose = None
         if self.lenses:
-            # Where a pattern repeats, wrong matches lead to further ones, but seldom to one pose: a second try is from those alone
-            # that agree with a first one. Only where right matches are few, the first try knows more.
+            # Wrong matches of a repeating pattern propagate too, but seldom agree with a pose. A second try propagates the inliers of a
+            # first pose alone. If these are few, the first try is better.
             pose = self._pose(*propagated[1:3])
             first = self._pose(*(points[:count] for points in propagated[1:3]))
             again, _ = self._propagated(rows, propagated.matches[:count][first.inliers.ravel() > 0])
@@ -239,8 +241,8 @@ class _Pair:
         view = similarity(matches.points1[agree], matches.points2[agree])
         return Measured(matches, bits, pose, found, view, *rotation_and_scale(self._upright(view)))
 
-    def seen(self, points: int) -> Measured:
-        """In views of both images, whatever the zoom, rotation and tilt between them; bits are -1, since no keypoints are kept."""
+    def by_views(self, points: int) -> Measured:
+        """The result of simulated views, for any zoom, rotation and tilt; bits are -1, since matches have no keypoints."""
         found = match_stored(self.images, self._turns, self._masks, points)
         visible = self._visible(found.points1, found.points2)
         matches = RefinedMatches(*(each[visible] for each in found[2:6]))
@@ -250,11 +252,11 @@ class _Pair:
                         view, *rotation_and_scale(self._upright(view)))
 
     def _upright(self, view: np.ndarray) -> np.ndarray:
-        """Of a map between the files' pixels."""
+        """The map between upright images of a map between stored ones."""
         return np.linalg.inv(self._turns[1].matrix) @ view @ self._turns[0].matrix
 
     def rotated(self, features: Features, otherwise: Measured) -> Measured:
-        """With features of any detector, by one angle for all."""
+        """The result of features of any detector, rotated by one angle."""
         if not len(self._rows[0]) or not len(self._rows[1]):
             return otherwise
         extractor = copy.copy(features.extractor)
@@ -265,14 +267,14 @@ class _Pair:
         return found if found.found else otherwise
 
     def _visible(self, *points: np.ndarray) -> np.ndarray:
-        """Which matches the cameras can see: a lens shows nothing beyond its range."""
+        """Whether the cameras can see each match: a lens model ends at some angle."""
         seen = np.ones(len(points[0]), bool)
         for some, lens in zip(points, self.lenses):
             seen &= np.isfinite(lens.undistorted(some)).all(axis=1)
         return seen
 
     def _propagated(self, rows: Sequence[np.ndarray], given: np.ndarray) -> tuple[PropagatedMatches, int]:
-        """What cameras see of what matches lead to, in the files' pixels, and how many of them were given."""
+        """Propagated matches that the cameras can see, in pixels of the stored images, and how many of them were given."""
         found = propagateMatches(self._prepared[0], rows[0], self._prepared[1], rows[1], given)
         found = found._replace(points1=self._turns[0].points(found.points1), points2=self._turns[1].points(found.points2),
                                covariances=self._turns[1].covariances(found.covariances))

@@ -27,18 +27,15 @@ Arrays = tuple[np.ndarray, np.ndarray]
 
 def write(folder: Path, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per_shard: int = 1 << 20,
           level_sizes: Optional[Sequence[int]] = None) -> MappedIndex:
-    """Writes codes to a new folder, shard by shard; it appears when it is complete.
+    """Writes codes to a new folder, shard by shard, called ``folder.partial`` until it is complete. A repeated call continues an interrupted one.
 
-    Until then it is called ``folder.partial``, and the same call goes on from the last shard that was written.
-
-    :param codes: N x bytes uint8, which is cut into shards; or arrays like that, each of which stays whole as an image of
-        the :class:`MappedIndex`.
+    :param codes: N x bytes uint8, to be cut into shards; or several such arrays, each of which becomes one image of the
+        :class:`MappedIndex`.
     :param rows_per_shard: a shard ends with the image that brings it to so many rows. One shard is in memory at a time.
     :param level_sizes: bytes of each level, coarse first; None: one level.
     :raises ValueError: if ``folder.partial`` was begun with other codes or other sizes, or there are no codes.
-    :raises FileExistsError: if the folder is there, or ``folder.partial`` is a link.
-    :raises BlockingIOError: if another process is writing it.
-    """
+    :raises FileExistsError: if the folder exists, or ``folder.partial`` is a link.
+    :raises BlockingIOError: if another process is writing it."""
     if integer(rows_per_shard, 'rows_per_shard', 64) < 1:
         raise ValueError(f'rows_per_shard is {rows_per_shard}: at least 1 is needed')
     if not isinstance(codes, np.ndarray) and not hasattr(codes, '__iter__'):
@@ -77,12 +74,12 @@ def _write(folder: str, images: Iterator[np.ndarray], rows_per_shard: int,
     manifest = os.path.join(folder, 'manifest.iib')
     if os.path.exists(manifest):
         index = MappedIndex(folder)
-    if index is not None and not index.images():  # of a call that failed: nothing to go on from
+    if index is not None and not index.images():  # of a call that failed at once
         index = None
         os.unlink(manifest)
     if index is not None:
         if level_sizes is not None and index.levelSizes() != tuple(level_sizes):
-            raise ValueError(f'{folder} was begun with level sizes {index.levelSizes()}: remove it, or go on with these')
+            raise ValueError(f'{folder} was begun with level sizes {index.levelSizes()}: remove it, or use these')
         _skip(index, images, folder)
     elif level_sizes is not None:
         index = MappedIndex.create(folder, level_sizes)
@@ -102,7 +99,6 @@ def _write(folder: str, images: Iterator[np.ndarray], rows_per_shard: int,
 
 
 def _skip(index: MappedIndex, images: Iterator[np.ndarray], folder: str) -> None:
-    """Drops the images that an interrupted call has written."""
     for number in range(index.images()):
         image = next(images, None)
         if image is None or not np.array_equal(image, index.descriptors(number)):
@@ -112,17 +108,15 @@ def _skip(index: MappedIndex, images: Iterator[np.ndarray], folder: str) -> None
 def search(folder: Path, queries: Any, k: int = 5, client: Any = None) -> Arrays:
     """The k nearest codes of each query by Hamming distance, in all shards; ties in the order of the codes.
 
-    The result is the same, byte for byte, without a client and for any number of shards and workers. A worker that
-    vanishes costs time: others take its shards.
+    The result is the same, byte for byte, for any number of shards and workers. Shards of a worker that is lost go to others.
 
     :param queries: rows of as many bytes as the codes.
     :param client: None to search in this process; or a ``distributed.Client``, whose workers read the folder by the same
-        name. Each shard goes to the same worker as before if that is there, which has it mapped already.
-    :return: indices (int64) and distances (int32), queries x k, -1 where there are fewer.
-    :raises opencv_iib.error: for a shard that is missing, truncated or altered; it is named. Also for a k of more than there are
-        codes that would fill the memory.
-    :raises RuntimeError: if the client has had no worker for a minute.
-    """
+        name. Each shard goes to the same worker in all calls, which has mapped it.
+    :return: indices (int64) and distances (int32), queries x k, -1 if there are fewer codes.
+    :raises opencv_iib.error: for a shard that is missing, truncated or altered, with its name. Also if k exceeds the number of codes and the
+        result would fill the memory.
+    :raises RuntimeError: if the client has had no worker for a minute."""
     queries = as_array(queries, 'queries')
     index = _opened(os.path.abspath(os.fspath(folder)))
     k, rows = integer(k, 'k'), index.rows()
@@ -158,7 +152,7 @@ def _by_workers(client: Any, call: Callable[[int], Arrays], shards: Iterable[int
         for future in done:
             try:
                 found.append(future.result(_PATIENCE))
-            except TimeoutError:  # its worker vanished with it, or the way is slow: the next round tells
+            except TimeoutError:  # the worker is lost, or slow: try in the next round
                 continue
             del waiting[future]
         yield from found
@@ -167,7 +161,7 @@ def _by_workers(client: Any, call: Callable[[int], Arrays], shards: Iterable[int
             seen = time.monotonic()
         elif time.monotonic() - seen > _WITHOUT_WORKERS:
             raise RuntimeError(f'no worker has been there for {_WITHOUT_WORKERS} s: start some and search again')
-        # If all workers vanish at once, the scheduler keeps their tasks for them, whatever workers come later.
+        # If all workers are lost at once, the scheduler keeps their tasks for them, so submit these again.
         for future, shard in list(waiting.items()):
             if alive and not found and shard in place and place[shard] not in alive:
                 del waiting[future], place[shard]
@@ -182,7 +176,7 @@ _indices: dict[str, MappedIndex] = {}
 
 
 def _opened(folder: str) -> MappedIndex:
-    """The folder's last commit; what this process has mapped of it stays so."""
+    """The folder's last commit. Parts that this process has mapped stay mapped."""
     index = MappedIndex(folder)
     with _lock:
         known = _indices.get(folder)

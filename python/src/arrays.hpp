@@ -15,23 +15,23 @@ namespace nb = nanobind;
 
 namespace iib_python {
 
-//! What crosses the border: memory of the caller, C-contiguous and native (opencv_iib/_arrays.py sees to that).
+//! An array of the caller, C-contiguous and of native byte order (as opencv_iib/_arrays.py makes it).
 typedef nb::ndarray<nb::ro, nb::c_contig, nb::device::cpu> Array;
 
-//! A numpy array that owns the matrix's memory: 2 dimensions, and channels last if there are several.
+//! A numpy array that owns the matrix's memory: rows x columns, or with channels last if there are several.
 nb::object toNumpy(const cv::Mat& matrix);
 
-// What stands for arrays, read from them (false for another shape or type, which Python has checked) and written as matrices.
+// Types that are passed as arrays. read() returns false for another shape or type, matrixOf() is the array of a value.
 
-//! A view, of 2 dimensions, or of 3 with the channels last; empty if the array is.
+//! A view of rows x columns, or with channels last.
 bool read(const Array& array, cv::Mat& view);
 inline const cv::Mat& matrixOf(const cv::Mat& matrix) { return matrix; }
 
-//! Rows of x, y, size, and further angle, and further response, octave, class_id, CV_32F; written are all.
+//! Rows of x, y, size, then optionally angle, then optionally response, octave, class_id, CV_32F; written with all seven.
 bool read(const Array& array, std::vector<cv::KeyPoint>& keypoints);
 cv::Mat matrixOf(const std::vector<cv::KeyPoint>& keypoints);
 
-//! Rows of queryIdx and trainIdx, CV_32S; written as queryIdx, trainIdx, imgIdx, distance.
+//! Rows of queryIdx and trainIdx, CV_32S; written with imgIdx and distance.
 bool read(const Array& array, std::vector<cv::DMatch>& matches);
 cv::Mat matrixOf(const std::vector<cv::DMatch>& matches);
 
@@ -56,17 +56,17 @@ template <typename Point> cv::Mat matrixOf(const std::vector<Point>& points)
                           : cv::Mat(points, true).reshape(1);
 }
 
-//! Reads the attributes of objects like cv2.KeyPoint, of any cv2 or none: x, y, size, angle, response, octave, class_id, CV_32F.
+//! Rows of x, y, size, angle, response, octave, class_id, CV_32F, of objects like cv2.KeyPoint.
 cv::Mat readKeyPoints(nb::sequence objects);
 
-//! A file's name as the system has it, of a str, bytes or os.PathLike. What is none raises Python's own exceptions.
+//! The system's name of a file, from a str, bytes or os.PathLike; raises Python's own exceptions.
 std::string pathOf(nb::handle path);
 
-//! What write() tells, as text.
+//! The text of write().
 std::string parametersOf(const cv::Algorithm& self);
 void setParameters(cv::Algorithm& self, const std::string& text);
 
-//! Of functions that need nothing of Python.
+//! For functions that need nothing of Python.
 typedef nb::call_guard<nb::gil_scoped_release> WithoutGil;
 
 }  // namespace iib_python
@@ -74,14 +74,14 @@ typedef nb::call_guard<nb::gil_scoped_release> WithoutGil;
 namespace nanobind {
 namespace detail {
 
-//! Of what read() and matrixOf() are for; the array lives as long as the call.
+//! Converts by read() and matrixOf(); the array lives as long as the call.
 template <typename T> struct array_caster
 {
     NB_TYPE_CASTER(T, const_name("numpy.typing.NDArray"))
 
     bool from_python(handle source, uint32_t flags, cleanup_list* cleanup) noexcept
     {
-        // A view of a converted copy, an element of a list, would outlive it.
+        // No implicit conversion: a view of a converted copy, of an element of a list, would outlive the copy.
         return array.from_python(source, std::is_same<T, cv::Mat>::value ? 0 : flags, cleanup) &&
                iib_python::read(array.value, value);
     }

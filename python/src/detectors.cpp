@@ -12,11 +12,8 @@ namespace {
 typedef cv::iib::NormalizedDetector Normalized;
 typedef cv::iib::HessianDetector Hessian;
 
-/** @brief A detector of Python, for instance of a foreign cv2, as this OpenCV's Feature2D.
-
-`function(image, mask or None)` gives rows of keypoints (arrays.hpp). Only arrays cross; the image that it gets is
-a copy, since a detector may keep it. Any thread may call it. It computes no descriptors.
- */
+//! A detector of Python, for instance of another cv2, as this OpenCV's Feature2D. `function(image, mask or None)` gets copies, since a detector
+//! may keep them, and returns rows of keypoints (arrays.hpp). Any thread may call it.
 class ForeignDetector CV_FINAL : public cv::Feature2D
 {
 public:
@@ -52,7 +49,7 @@ std::vector<cv::KeyPoint> detect(const Detector& self, const cv::Mat& image, con
     return keypoints;
 }
 
-// Of arrays and lists of them, as objects of cv2 if it is there.
+// In Python, since it takes lists of images too, and returns objects of cv2 if it is installed.
 nb::object detected(nb::handle self, nb::handle image, nb::handle mask)
 {
     return nb::module_::import_("opencv_iib.detectors").attr("detected")(self, image, mask);
@@ -62,9 +59,9 @@ const char* const DETECT = "def detect(self, image: numpy.typing.ArrayLike, "
                            "mask: typing.Optional[numpy.typing.ArrayLike] = None) -> tuple[typing.Any, ...]";
 
 const char* const DETECT_DOC =
-        R"(Keypoints, as cv2.KeyPoint if cv2 is there; of a list of images, such a tuple for each.
+        R"(Keypoints, as cv2.KeyPoint if cv2 is installed; for a list of images, a tuple for each.
 
-:param mask: H x W uint8, 0 where nothing is to be found; a list with a list of images.)";
+:param mask: H x W uint8, 0 where no points may be found; a list for a list of images.)";
 
 void newHessian(HeldDetector<Hessian>* self, int maxFeatures, float threshold, int scales, float sigma,
         float normalizationSigma, int workingSize)
@@ -77,22 +74,11 @@ const char* const NEW_HESSIAN =
         "def __init__(self, maxFeatures: int = 1000, threshold: float = 0.0, scales: int = 5, "
         "sigma: float = 2.2, normalizationSigma: float = 5.0, workingSize: int = 1024) -> None";
 
-const char* const NEW_HESSIAN_DOC = R"(Creates a detector.
-
-:param maxFeatures: the strongest that are kept; 0 keeps all.
-:param threshold: smallest response, 0 or more.
-:param scales: number of scales, 1 to 8, each sqrt(2) times the one before.
-:param sigma: of the smallest scale in pixels of the (reduced) image, 1.5 to 8.
-:param normalizationSigma: of the local normalization's Gaussian in pixels of the (reduced) image, 2 to 256.
-:param workingSize: of images, pixels of the longer side, 64 or more; larger ones are reduced by a whole factor
-    before points are found, which are in the image's own pixels all the same. 0 never reduces.)";
-
 }  // namespace
 
 void bindDetectors(nb::module_& m)
 {
-    nb::class_<Detector> any(
-            m, "Detector", "What finds keypoints: the base of the detectors and of the descriptor.");
+    nb::class_<Detector> any(m, "Detector", "The base of the detectors and the descriptor.");
     any.def_static("_foreign",
                [](nb::callable function, const std::string& name) {
                    return Detector{cv::makePtr<ForeignDetector>(function, name)};
@@ -117,7 +103,8 @@ void bindDetectors(nb::module_& m)
 
     nb::class_<HeldDetector<Hessian>, Detector> hessian(m, "HessianDetector");
     sharing(hessian);
-    hessian.def("__init__", &newHessian, nb::sig(NEW_HESSIAN), NEW_HESSIAN_DOC);
+    hessian.def("__init__", &newHessian, nb::sig(NEW_HESSIAN),
+            "Creates a detector with the parameters of the setters.");
     property(hessian, "MaxFeatures", &Hessian::getMaxFeatures, &Hessian::setMaxFeatures,
             "The strongest that are kept; 0 keeps all.");
     property(hessian, "Threshold", &Hessian::getThreshold, &Hessian::setThreshold,
@@ -127,9 +114,10 @@ void bindDetectors(nb::module_& m)
     property(hessian, "Sigma", &Hessian::getSigma, &Hessian::setSigma,
             "Of the smallest scale in pixels, 1.5 to 8.");
     property(hessian, "NormalizationSigma", &Hessian::getNormalizationSigma, &Hessian::setNormalizationSigma,
-            "Of the local normalization's Gaussian in pixels, 2 to 256.");
+            "Of the local normalization's Gaussian in pixels of the (reduced) image, 2 to 256.");
     property(hessian, "WorkingSize", &Hessian::getWorkingSize, &Hessian::setWorkingSize,
-            "Of images, pixels of the longer side, 64 or more; larger ones are reduced. 0 never reduces.");
+            "Of images, pixels of the longer side, 64 or more; larger ones are reduced by a whole factor, "
+            "and keypoints are in the image's own pixels. 0 never reduces.");
 }
 
 }  // namespace iib_python

@@ -12,7 +12,7 @@ namespace {
 typedef cv::iib::IIBDescriptorExtractor Extractor;
 typedef HeldDetector<Extractor> Self;
 
-// The descriptors, and which keypoints were kept if not all were.
+// The descriptors, and the numbers of the keypoints that were kept if not all were.
 std::tuple<cv::Mat, std::optional<cv::Mat>> compute(const Self& self, const cv::Mat& image,
         std::vector<cv::KeyPoint> keypoints, const std::vector<cv::Mat>& extraChannels)
 {
@@ -31,7 +31,7 @@ std::tuple<cv::Mat, std::optional<cv::Mat>> compute(const Self& self, const cv::
     return {descriptors, kept};
 }
 
-// The same without its detector, which may be an object of Python that no file can hold.
+// A copy without its detector, which may be an object of Python that no file can hold.
 cv::Ptr<Extractor> withoutDetector(const Extractor& self)
 {
     const cv::Ptr<Extractor> result = Extractor::create(self.getScaleFactor(), self.getGranularity(),
@@ -101,10 +101,10 @@ void bindExtractor(nb::module_& m)
     property(cls, "Overlap", &Extractor::getOverlap, &Extractor::setOverlap,
             "Whether the windows of 2 x 2 cells slide by one cell instead of two.");
     property(cls, "UseOrientation", &Extractor::getUseOrientation, &Extractor::setUseOrientation,
-            "True: ORIENTATION_KEYPOINT, False: ORIENTATION_NONE. What is got: whether it is another than "
-            "ORIENTATION_NONE.");
+            "True: ORIENTATION_KEYPOINT, False: ORIENTATION_NONE. The getter returns False for "
+            "ORIENTATION_NONE alone.");
     property(cls, "Orientation", &Extractor::getOrientation, &Extractor::setOrientation,
-            "How the described squares are turned: one of ORIENTATION_.", "Orientation", "mode");
+            "How the described squares are rotated: one of ORIENTATION_.", "Orientation", "mode");
     property(cls, "ExtraChannels", &Extractor::getExtraChannels, &Extractor::setExtraChannels,
             "Number of maps that computeWithChannels is given, 0 to 16.");
     property(cls, "Border", &Extractor::getBorder, &Extractor::setBorder, "One of BORDER_.", "Border");

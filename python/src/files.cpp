@@ -14,7 +14,7 @@ using cv::iib::FileLock;
 using cv::iib::OutputFolder;
 using cv::iib::WholeFile;
 
-//! @param own names of files that the folder may hold.
+//! @param own names of files that the folder may contain.
 static void makeFolder(OutputFolder* self, nb::handle path, const std::vector<nb::bytes>& own)
 {
     std::set<std::string> names;

@@ -9,7 +9,7 @@
 
 namespace iib_python {
 
-//! An object of the library inside one of Python: made in place, so that Python's classes can extend its class.
+//! An object of the library inside one of Python, constructed in place, so that Python's classes can extend its class.
 template <typename T> struct Held
 {
     cv::Ptr<T> held;
@@ -26,21 +26,21 @@ template <typename T> struct HeldDetector : Detector
     T* operator->() const { return &**this; }
 };
 
-//! From another object: what new ones that Python makes without `__init__` are given.
+//! Constructs an object from another one, for those that Python makes without `__init__`.
 template <typename Class> void sharing(Class& cls)
 {
     typedef typename Class::Type Self;
     cls.def("__setstate__", [](Self& self, const Self& other) { new (&self) Self(other); });
 }
 
-//! What a call returns: a tuple of Python for a vector.
+//! The result of a call; a tuple of Python for a vector.
 template <typename T> T result(const T& value) { return value; }
 template <typename T> nb::typed<nb::tuple, T, nb::ellipsis> result(const std::vector<T>& values)
 {
     return nb::borrow<nb::typed<nb::tuple, T, nb::ellipsis>>(nb::tuple(nb::cast(values)));
 }
 
-//! A method without arguments, as the library has it.
+//! A method of the library without arguments.
 template <typename Class, typename Owner, typename Value, typename... Extra>
 void method(Class& cls, const char* name, Value (Owner::*get)() const, const char* doc, const Extra&... extra)
 {
@@ -56,8 +56,8 @@ void method(Class& cls, const char* name, void (Owner::*act)(), const char* doc)
             name, [act](Self& self) { ((*self).*act)(); }, doc);
 }
 
-//! setX and getX. @param type of opencv_iib.enums, which getX returns then (opencv_iib/_methods.py does that); empty: Value.
-//! @param argument of setX; empty: X, which begins with a small letter then.
+//! setX and getX. @param type of opencv_iib.enums that getX returns (see opencv_iib/_methods.py); empty: Value.
+//! @param argument of setX; empty: X with a small first letter.
 template <typename Class, typename Owner, typename Value>
 void property(Class& cls, const std::string& name, Value (Owner::*get)() const, void (Owner::*set)(Value),
         const char* doc, const std::string& type = "", std::string argument = "")

@@ -21,7 +21,7 @@ nb::bytes bytesOf(const std::string& text) { return nb::bytes(text.data(), text.
 
 typedef std::pair<std::optional<cv::Affine3d>, std::optional<cv::Mat>> PoseAndCovariance;
 
-//! What Location of Python is made of.
+//! The arguments of Python's Location.
 auto valuesOf(const Location& location)
 {
     PoseAndCovariance known;

@@ -18,7 +18,7 @@ Self clone(const Self& self, bool emptyTrainData)
     return {self->clone(emptyTrainData).dynamicCast<Matcher>()};
 }
 
-//! For a train set of a call: counts its cost with that of `self`.
+//! A matcher for the train set of a call, whose cost is added to that of `self`.
 Self on(const Self& self, const cv::Mat& train)
 {
     const Self given = clone(self, true);

@@ -24,7 +24,7 @@ NB_MODULE(_core, m)
                 }
             },
             error.ptr());
-    nb::set_leak_warnings(false);  // it would print of objects that other threads hold at the program's end
+    nb::set_leak_warnings(false);  // it would warn about objects that other threads hold at the program's end
     bindDetectors(m);
     bindExtractor(m);
     bindMatcher(m);

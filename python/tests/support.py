@@ -1,5 +1,6 @@
 """Images and keypoints made of integers alone, as modules/iib/test/support/test_images.cpp makes them."""
 import contextlib
+import csv
 import importlib
 import io
 import shutil
@@ -30,7 +31,7 @@ resource = optional('resource')  # not on Windows
 class Commands(unittest.TestCase):
 
     def check_mistake(self, pattern, *arguments):
-        """That it is told as a mistake in the command line."""
+        """That the command reports a mistake in the command line."""
         self.check_error(pattern, *arguments, expected=2)
 
     def check_error(self, pattern, *arguments, expected=1):
@@ -46,6 +47,16 @@ class InFolder(Commands):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)  # Windows keeps files that are still mapped
+
+    def write(self, name, image):
+        """The path of an image that is written here."""
+        cv2.imwrite(str(self.folder / name), image)
+        return str(self.folder / name)
+
+    def rows(self, name):
+        """Of a table in CSV."""
+        with open(self.folder / name, newline='') as file:
+            return list(csv.DictReader(file))
 
 
 def run_command(*arguments):

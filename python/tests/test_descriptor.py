@@ -205,9 +205,9 @@ class Objects(InFolder):
         iib.write(path)
         other.read(path)
         nowhere = self.folder / 'nothing' / 'iib.yml'
-        for call, told in ((iib.write, 'Cannot write .*/nothing/iib.yml: check the folder'),
+        for call, message in ((iib.write, 'Cannot write .*/nothing/iib.yml: check the folder'),
                            (iib.save, 'Cannot write .*/nothing/iib.yml'), (iib.read, 'nothing/iib.yml cannot be read')):
-            with self.assertRaisesRegex(opencv_iib.error, told):
+            with self.assertRaisesRegex(opencv_iib.error, message):
                 call(nowhere)
         names = ['iib.xml', 'iib.json', os.fsdecode(b'\xe9.yml'), '\u65e5\u672c.yml']
         if os.name != 'nt':  # cv::FileStorage, which takes names of the code page alone there, ends a name before a '?'
@@ -243,9 +243,9 @@ class Objects(InFolder):
                 self.assertEqual([[k.pt for k in each] for each in (some, same)], [[k.pt for k in points]] * 2)
                 np.testing.assert_array_equal(rows, expected)
             self.assertEqual([len(some) for some in iib.detect(given, masks)], [0, len(iib.detect(images[1], masks[1]))])
-        for mistake, told in ((lambda: iib.compute(images, found[:1]), '2 images, but keypoints of 1'), (lambda: iib.detect(images, masks * 2), 'masks of 4'),
+        for mistake, message in ((lambda: iib.compute(images, found[:1]), '2 images, but keypoints of 1'), (lambda: iib.detect(images, masks * 2), 'masks of 4'),
                              (lambda: iib.compute(images, None), 'keypoints of None')):
-            with self.assertRaisesRegex(opencv_iib.error, told):
+            with self.assertRaisesRegex(opencv_iib.error, message):
                 mistake()
         with self.assertRaisesRegex(TypeError, 'did cv2.imread find'):
             iib.detect([images[0], None])

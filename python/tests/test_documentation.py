@@ -111,7 +111,7 @@ class Documentation(InFolder):
     def test_programs_say_what_is_wrong(self):
         cv2.imwrite(str(self.folder / 'flat.png'), np.full_like(self.images['day'], 77))
         pages = {page.name: page for page in reversed(PAGES)}
-        for name, arguments, told in (
+        for name, arguments, message in (
                 ('README.md', '', 'two images'), *((name, '', 'usage: ') for name, run in RUNS.items() if name.startswith('iib_') and run[0][0]),
                 ('iib_saving_index.markdown', 'day.png flat.png', 'no keypoints in flat.png'), ('README.md', 'gone.png day.png', 'gone.png'), ('iib_day_night.markdown', 'day.png gone.png', 'gone.png'),
                 ('iib_day_night.markdown', 'day.png flat.png', 'only 0 matches'), ('iib_align.markdown', 'day.png gone.png a.png', 'gone.png'),
@@ -124,7 +124,7 @@ class Documentation(InFolder):
                 (self.folder / 'program.py').write_text(programs(pages[name])[0])
                 done = subprocess.run([sys.executable, 'program.py', *arguments.split()], capture_output=True, text=True, cwd=self.folder)
                 self.assertEqual(done.returncode, 1)
-                self.assertRegex(done.stderr, rf'^(\[ *WARN.*\n)?[^\n]*{told}[^\n]*\n$')
+                self.assertRegex(done.stderr, rf'^(\[ *WARN.*\n)?[^\n]*{message}[^\n]*\n$')
 
     def test_every_program_is_known(self):
         self.assertGreater(len(PAGES), 15)

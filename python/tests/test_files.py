@@ -67,8 +67,8 @@ class Files(InFolder):
             self.assertEqual((os.readlink(self.folder / name), (self.folder / to).read_bytes()), (to, b'text'))
         self.assertEqual(target.stat().st_mode & 0o777, 0o640)
         write_whole('/dev/null', b'text')
-        for path, told in ((self.folder, 'is a folder'), (self.folder / 'no/a', 'there is no folder')):
-            with self.assertRaisesRegex(OSError, told):
+        for path, message in ((self.folder, 'is a folder'), (self.folder / 'no/a', 'there is no folder')):
+            with self.assertRaisesRegex(OSError, message):
                 write_whole(str(path), b'text')
 
     @WITH_LINKS
@@ -120,8 +120,8 @@ class Files(InFolder):
             (self.folder / name).unlink()
         os.unlink(self.folder / 'out/b')
         (self.folder / 'out/b').symlink_to('../precious/thesis')
-        for out, told in (('out', 'holds b'), ('bare', 'holds index.txt'), ('precious/thesis', 'cannot be written')):
-            with self.assertRaisesRegex(FileExistsError, told):
+        for out, message in (('out', 'holds b'), ('bare', 'holds index.txt'), ('precious/thesis', 'cannot be written')):
+            with self.assertRaisesRegex(FileExistsError, message):
                 self.results('b', out=out)
         os.unlink(self.folder / 'out/b')
         with Results(str(self.folder / 'out'), 'measure') as results:
@@ -145,13 +145,13 @@ class Files(InFolder):
     @WITH_LINKS
     def test_one_writes_at_a_time_in_python_and_cpp(self):
         out = self.folder / 'out'
-        told = 'is being written by another process'
+        message = 'is being written by another process'
         with Results(str(out), 'measure'):
-            with self.assertRaisesRegex(FileExistsError, told):
+            with self.assertRaisesRegex(FileExistsError, message):
                 self.results('a')
-            with self.assertRaisesRegex(_core.error, told):
+            with self.assertRaisesRegex(_core.error, message):
                 _core.buildMap(str(self.folder), lambda name: np.zeros((0, 0), np.uint8), str(out), 10, False, False, 0, lambda *step: None)
-        with only_writer(str(self.folder / 'a')), self.assertRaisesRegex(BlockingIOError, told), only_writer(str(self.folder / 'a')):
+        with only_writer(str(self.folder / 'a')), self.assertRaisesRegex(BlockingIOError, message), only_writer(str(self.folder / 'a')):
             pass
         with self.assertRaisesRegex(BlockingIOError, 'has removed .*gone meanwhile'), only_writer(str(self.folder / 'gone'), is_folder=True):
             pass

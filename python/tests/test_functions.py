@@ -1,4 +1,4 @@
-"""Functions from arrays to arrays, values by name, and tensors."""
+"""Functions from arrays to arrays, and tensors."""
 import unittest
 
 import numpy as np
@@ -87,15 +87,3 @@ class Functions(unittest.TestCase):
         if len(tensors) > 1:
             with self.assertRaisesRegex((RuntimeError, TypeError, opencv_iib.error), 'grad'):
                 opencv_iib.detect_and_describe(torch.from_numpy(planes).requires_grad_())
-
-    def test_values_by_name(self):
-        iib = opencv_iib.IIB.createPreset(opencv_iib.Preset.SMALL, 18)
-        self.assertEqual(iib.descriptorSize(), opencv_iib.IIB.createPreset(9, 18).descriptorSize())
-        iib.setOrientation(opencv_iib.Orientation.GRADIENT)
-        self.assertIs(iib.getOrientation(), opencv_iib.Orientation.GRADIENT)
-        iib.setBorder(1)
-        self.assertIs(iib.getBorder(), opencv_iib.Border.DROP)
-        iib.setChannels(opencv_iib.Channel.GRAD_X | opencv_iib.Channel.SIGNED_GRAD_Y)
-        self.assertEqual(iib.getChannels(), 33)
-        matcher = opencv_iib.HierarchicalMatcher(mode=opencv_iib.Mode.ADAPTIVE)
-        self.assertIs(matcher.getMode(), opencv_iib.HierarchicalMatcher.ADAPTIVE)

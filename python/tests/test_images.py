@@ -48,9 +48,9 @@ class Files(Collection):
         (self.images / 'good.jpg').write_bytes(whole[:2] + b'\xff' + thumbnail + whole[2:] + b'trailer \xff\xda')
         counts = self.build()
         self.assertEqual((counts['images'], counts['failed'], len(self.lines)), (4, 10, 10))
-        for told in ('its name is not UTF-8', 'broken.jpg: not an image that cv2 reads', 'empty.jpg: the file is empty', 'half.jpg: the file is cut off',
+        for message in ('its name is not UTF-8', 'broken.jpg: not an image that cv2 reads', 'empty.jpg: the file is empty', 'half.jpg: the file is cut off',
                      'half.png: the image is damaged or cut off', 'huge.png: not an image that cv2 reads: of more than 2^30 pixels'):
-            self.assertTrue(any(told in line for line in self.lines), told)
+            self.assertTrue(any(message in line for line in self.lines), message)
 
     def test_images_that_this_cv2_does_not_read_are_skipped_with_a_word(self):
         grey = texture(60, 40)

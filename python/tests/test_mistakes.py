@@ -1,4 +1,4 @@
-"""What a user gets wrong is told in words of Python: what it is, and what to do."""
+"""Messages for mistakes name the argument in words of Python, and say what to do."""
 import contextlib
 import inspect
 import unittest
@@ -75,8 +75,8 @@ class Texts(InFolder):
     def test_arrays_without_numbers(self):
         image, points = texture(60, 60), grid()
         for matches in ([[]], ((),), ((), ()), np.zeros((5, 0), np.int32), np.zeros((0, 2), np.int32), np.zeros(0), []):
-            self.assertEqual(len(opencv_iib.refineMatches(image, points, image, points, matches).points1), 0)
-            self.assertEqual(len(opencv_iib.propagateMatches(image, points, image, points, matches).points1), 0)
+            for found in (opencv_iib.refineMatches(image, points, image, points, matches), opencv_iib.propagateMatches(image, points, image, points, matches)[1:]):
+                self.assertEqual([(a.shape, a.dtype) for a in found], [(shape, np.float32) for shape in ((0, 2), (0, 2), (0, 3), (0,))])
             self.expect(opencv_iib.error, '0 matches', lambda: opencv_iib.estimateRotation(points, points, matches))
         self.assertFalse(opencv_iib.findRelativePose(np.zeros((9, 0)), np.zeros((9, 0)), np.eye(3), np.eye(3)).found)
         for flat in (np.zeros(5, np.uint8), np.zeros(0, np.uint8), np.zeros((5, 0), np.uint8)):
@@ -143,6 +143,7 @@ class Texts(InFolder):
         for text, *arguments in (('rows_per_shard: an integer', codes, (3, 5)), ('rows_per_shard: an integer', codes, 1.5), ('codes: an array, or', None),
                                  ('codes: an array of numbers', 'x'), ('levelSizes: a sequence', codes, 5, 'x')):
             self.expect(TypeError, text, lambda: shards.write(self.folder / 'sh', *arguments))
+        self.expect(ValueError, 'at least 1 is needed', lambda: shards.write(self.folder / 'sh', codes, 0))
         for flat in (codes[0], [codes[0]]):
             self.expect(ValueError, 'codes: rows x bytes are needed', lambda: shards.write(self.folder / 'sh', flat))
         self.assertEqual(shards.write(self.folder / 'sh', codes).rows(), 5)
@@ -214,7 +215,7 @@ class Tensors(unittest.TestCase):
         self.assertGreater(len(found[0][3]), 50)
         self.assertEqual(*[[(m.queryIdx, m.trainIdx) for m in one[3]] for one in found])
 
-    def test_match_rotated_is_told_mistakes_before_it_detects(self):
+    def test_match_rotated_checks_arguments_before_it_detects(self):
         class Never:
             def detect(self, image, mask):
                 raise AssertionError('it detects')

@@ -38,12 +38,14 @@ class Names(unittest.TestCase):
         for name, member in opencv_iib.Channel.__members__.items():
             self.assertIs(getattr(iib, 'CHANNELS_DEFAULT' if name == 'DEFAULT' else 'CHANNEL_' + name), member)
 
-    def test_there_are_no_others(self):
-        iib, matcher = opencv_iib.IIB(channels=59, granularity=5), opencv_iib.HierarchicalMatcher([8, 8])  # which every value suits
-        for enum, use in ((opencv_iib.Mapping, iib.setMapping), (opencv_iib.Border, iib.setBorder), (opencv_iib.Mode, matcher.setMode),
-                          (opencv_iib.Orientation, iib.setOrientation), (opencv_iib.Preset, lambda preset: iib.createPreset(preset, 2))):
+    def test_getters_return_them_and_there_are_no_others(self):
+        iib, matcher = opencv_iib.IIB(channels=59, granularity=5), opencv_iib.HierarchicalMatcher([8, 8])  # for which every value is valid
+        for enum, use, get in ((opencv_iib.Mapping, iib.setMapping, iib.getMapping), (opencv_iib.Border, iib.setBorder, iib.getBorder),
+                               (opencv_iib.Mode, matcher.setMode, matcher.getMode), (opencv_iib.Orientation, iib.setOrientation, iib.getOrientation),
+                               (opencv_iib.Preset, lambda preset: iib.createPreset(preset, 2), None)):
             for member in enum:
-                use(member)
+                use(int(member))
+                self.assertTrue(get is None or get() is member)
             with self.assertRaises(opencv_iib.error, msg=enum):
                 use(len(enum))
 

@@ -55,15 +55,6 @@ class Lists(Collection):
         with open(self.folder / 'posed/pairs.csv', newline='') as file:
             self.assertAlmostEqual(float(next(csv.DictReader(file))['r11']), 1, delta=.01)
 
-    @unittest.skipIf(os.name == 'nt', 'links need rights there')
-    def test_links_are_followed_and_what_is_done_stays(self):
-        out = self.folder / 'out'
-        out.symlink_to('disk')  # nothing is there yet
-        self.match(out, 'a.png more/c.png\n')
-        self.assertTrue(out.is_symlink())
-        self.match(out, 'a.png b.png\n', described=['a.png', 'b.png'])
-        self.match(out, described=[])
-
     def rows(self, out):
         """Of pairs.csv or a file in HDF5: each pair, and whether it is found."""
         if out.suffix == '.h5':
@@ -124,11 +115,6 @@ class Lists(Collection):
                 mine.unlink()
                 self.assertEqual(sorted(self.rows(out)), [('a.png', 'b.png', True), ('a.png', 'more-c.png' if name == 'x.h5' else 'more/c.png', True)])
                 self.assertEqual([path for path in self.folder.rglob('*.partial*')] + [path for path in self.folder.rglob('*.tmp')], [])
-        (self.folder / 'new').mkdir()
-        for out, name in (('new', 'new/pairs.csv.partial'), ('new.h5', 'new.h5.partial-journal'))[:1 + (h5py is not None)]:
-            (self.folder / name).write_bytes(b'precious' * 1000)
-            self.match(self.folder / out, status=1)
-            self.assertEqual((self.folder / name).read_bytes(), b'precious' * 1000)
 
     @unittest.skipIf(h5py is None, 'no h5py')
     def test_a_full_disk_is_one_line(self):
@@ -180,33 +166,10 @@ class Lists(Collection):
             with self.assertRaisesRegex(BlockingIOError, 'x.h5 is being written by another process'):
                 match_list._Hdf5(str(out))
 
-    def test_images_that_cannot_be_read_and_mistakes(self):
+    def test_images_that_cannot_be_read(self):
         (self.images / 'broken.png').write_bytes(b'no image')
         out = self.folder / 'out'
         self.match(out, 'a.png broken.png\nb.png broken.png\na.png b.png\n', 4)
-        (out / 'mine').write_text('precious')
-        self.check_error('which no earlier run wrote', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.images)
-        self.check_mistake('cannot be a folder: .*pairs.txt is a file', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out', self.folder / 'pairs.txt')
-        self.check_mistake('its camera has 9 x 9 pixels', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images,
-                           '--out', self.folder / 'new', '--camera', 'PINHOLE,9,9,5,5,4,4')
-        self.assertFalse((self.folder / 'new').exists())
-        self.check_mistake('there is no list', 'match', '--pairs', self.folder / 'gone', '--images', self.images, '--out', out)
-        self.check_mistake('no image is called no or image', 'match', '--pairs', self.images / 'broken.png', '--images', self.images, '--out', out)
-        for text, told in (('', 'has no pair'), ('a.png a.png\n', 'a.png is paired with itself')):
-            (self.folder / 'list').write_text(text)
-            self.check_mistake(told, 'match', '--pairs', self.folder / 'list', '--images', self.images, '--out', out)
-            self.check_mistake(told, 'colmap', self.images, self.folder / 'x.db', '--pairs', self.folder / 'list')
-        for name in ('-', '/dev/stdout', 'x.json', 'x.csv', 'x.parquet'):
-            self.check_mistake('in .h5 or .hdf5', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images, '--out',
-                               name if len(name) == 1 or name[0] == '/' else self.folder / name)
-            self.assertFalse((self.folder / name).exists() and name[0] == 'x')
-        (self.folder / 'empty').mkdir()
-        (self.folder / 'empty/pairs.csv').touch()
-        self.check_error('holds pairs.csv, which no earlier run wrote', 'match', '--pairs', self.folder / 'pairs.txt', '--images', self.images,
-                         '--out', self.folder / 'empty')
-        for wrong in ([], ['--images', self.images], ['--images', self.images, '--out', out, 'a.png'], ['--images', self.images, '--out', out, '--picture', 'x']):
-            self.check_mistake('goes with', 'match', '--pairs', self.folder / 'pairs.txt', *wrong)
-        self.check_mistake('two images are needed', 'match', self.images / 'a.png')
 
 
 class Pairs(Collection):

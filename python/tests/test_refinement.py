@@ -33,22 +33,14 @@ class Refinement(unittest.TestCase):
         self.assertLess(np.median(np.abs(points2 - points1 - np.float32([-2, -3]))[refined]), .05)
         self.assertTrue(np.all(covariances[refined][:, [0, 2]] > 0))
 
-    def test_no_matches(self):
-        found = refineMatches(self.images[0], self.rows, self.images[1], self.moved, [])
-        self.assertEqual([(a.shape, a.dtype) for a in found], [(shape, np.float32) for shape in ((0, 2), (0, 2), (0, 3), (0,))])
-
     def test_lists_of_pairs(self):
         for function in (refineMatches, propagateMatches):
             arguments = self.images[0], self.rows, self.images[1], self.moved
             for found, expected in zip(function(*arguments, self.pairs.tolist()), function(*arguments, self.pairs)):
                 np.testing.assert_array_equal(found, expected)
-            for wrong in ([0], 'x', None, 5, [(0, 0), (1,)], [[0, 0, 0]]):
+            for wrong in ([0], 'x', None, 5, [(0, 0), (1,)], [[0, 0, 0]], np.float32([[0, 0]])):
                 with self.assertRaisesRegex((TypeError, opencv_iib.error), '^matches.*array'):
                     function(*arguments, wrong)
-
-    def test_indices_that_are_none(self):
-        with self.assertRaisesRegex(opencv_iib.error, 'array of 2 columns'):
-            refineMatches(self.images[0], self.rows, self.images[1], self.moved, np.float32([[0, 0]]))
 
     def test_propagation(self):
         given = self.pairs[::4]

@@ -110,11 +110,6 @@ class ShardsTest(InFolder):
         self.assertEqual(os.listdir(os.path.dirname(self.folder)), [os.path.basename(self.folder)])
         self.assertNotIn('.partial', os.listdir(self.folder))
 
-    def test_mistakes(self):
-        for call in (lambda: shards.write(self.folder, self.codes, 0), lambda: shards.write(self.folder, self.codes[0])):
-            with self.assertRaises(ValueError):
-                call()
-
     def test_a_new_commit_is_seen(self):
         index = shards.write(self.folder, self.codes[:300], 100)
         self.expect_found(shards.search(self.folder, self.queries), 5, self.codes[:300])

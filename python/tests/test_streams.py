@@ -10,6 +10,7 @@ import sys
 import time
 import unittest
 from contextlib import redirect_stdout
+from pathlib import Path
 from unittest import mock
 
 from opencv_iib import _streams
@@ -23,7 +24,7 @@ def command(*arguments, **options):
     return subprocess.run([sys.executable, '-m', 'opencv_iib', *map(str, arguments)], capture_output='stdout' not in options, **options)
 
 
-class Telling(unittest.TestCase):
+class Output(unittest.TestCase):
 
     def test_work_goes_on_where_nobody_can_read_of_it(self):
         closed = io.StringIO()
@@ -43,7 +44,7 @@ class Telling(unittest.TestCase):
         for stream in streams[2:]:
             stream.close()
 
-    def test_a_name_of_two_lines_is_told_on_one(self):
+    def test_a_name_of_two_lines_is_printed_on_one(self):
         with mock.patch('sys.stderr', io.StringIO()) as stream:
             _streams.note('a\nb.png: what\r\nelse')
         self.assertEqual(stream.getvalue(), 'a\\nb.png: what\\nelse\n')
@@ -115,7 +116,7 @@ class Commands(InFolder):
         self.assertRegex(done.stderr.decode(), r'^match: - cannot be written: No space left[^\n]*\n$')
 
     @unittest.skipIf(shutil.which('bash') is None, 'no bash')
-    def test_what_is_not_open_is_told_before_work(self):
+    def test_closed_streams_are_found_before_work(self):
         for out in ('-', '/dev/stdout'):
             done = subprocess.run(['bash', '-c', f'{sys.executable} -m opencv_iib match {self.a} {self.a} --out {out} >&-'], capture_output=True)
             self.assertEqual((done.returncode, done.stderr.decode()), (2, f'match: {out} cannot be written: it is not open\n'))
@@ -133,7 +134,7 @@ class Commands(InFolder):
             shutil.copytree(os.path.join(mapped(), 'dark'), images / str(n))
         localize = ['localize', '--map', os.path.join(mapped(), 'map'), '--images', images, '--out', out, '--camera', CAMERA]
         align = ['align', next(images.rglob('*.png')), images, '--out', out]
-        for arguments, told in ((localize, b'interrupted\n'), (align, b'interrupted; the same command goes on from here\n')):
+        for arguments, message in ((localize, b'interrupted\n'), (align, b'interrupted; the same command goes on from here\n')):
             for pause in (.05, None):
                 begun = subprocess.Popen([sys.executable, '-m', 'opencv_iib', *map(str, arguments), '--workers', '4'], stderr=subprocess.PIPE)
                 while not (out.exists() and any(out.iterdir())):
@@ -144,7 +145,7 @@ class Commands(InFolder):
                     time.sleep(pause)
                     begun.send_signal(signal.SIGINT)
                 errors = begun.communicate()[1]
-                self.assertEqual((begun.returncode, errors[-len(told):]), (130, told))
+                self.assertEqual((begun.returncode, errors[-len(message):]), (130, message))
                 self.assertNotIn(b'terminate', errors)
                 shutil.rmtree(out, ignore_errors=True)
 
@@ -170,7 +171,7 @@ class Mistakes(InFolder):
 
     def test_in_options_end_with_2(self):
         place = ['--images', self.folder, '--out', self.folder / 'out']
-        for told, *arguments in (
+        for message, *arguments in (
                 ("opencv-iib: argument command: invalid choice: 'nothing'", 'nothing'), ("--model: invalid choice: 'x' (choose from TRANSLATION, ",
                  'align', 'a', 'b', '--out', 'c', '--model', 'x'), ('workers is 3000000000', 'map', '--model', 'm', *place, '--workers', '3000000000'),
                 ('points is 3000000000', 'map', '--model', 'm', *place, '--points', '3000000000'),
@@ -183,51 +184,63 @@ class Mistakes(InFolder):
                 ('invalid choice', 'colmap', self.folder, 'x.db', '--verify', 'no'), ('workers is 0', 'colmap', self.folder, 'x.db', '--workers', '0'),
                 ('workers is 0', 'localize', '--map', 'm', *place, '--workers', '0'),
                 ('workers is 0', 'match', 'a', 'b', '--workers', '0'), ('workers is 0', 'localize', '--map', 'm', '--images', '-', '--workers', '0'),
+                ('points is -1', 'map', '--model', 'm', *place, '--points', '-1', '--orb-and-akaze'), ('neighbours is -1', 'colmap', self.folder, 'x.db', '--neighbours', '-1'),
+                ('focal is nan', 'colmap', self.folder, 'x.db', '--focal', 'nan'), ('two images are needed', 'match', 'a'),
                 ('unrecognized arguments: --wrong', 'align', 'a', '--out', 'c', 'b', '--wrong'), ('unrecognized arguments: d', 'demo', 'a', 'b', 'd'), ('arguments are required', 'update')):
             with self.subTest(arguments):
                 status, out, errors = run_command(*arguments)
                 self.assertEqual((status, out), (2, ''))
-                self.assertRegex(errors, rf'^(?=[^\n]*{re.escape(told)})(opencv-iib|{arguments[0]}): [^\n]*\n$')
+                self.assertRegex(errors, rf'^(?=[^\n]*{re.escape(message)})(opencv-iib|{arguments[0]}): [^\n]*\n$')
 
     @unittest.skipIf(cv2 is None, 'no cv2')
     def test_files_that_cannot_be_meant_end_with_2_before_work(self):
-        image, folder = self.folder / 'a.png', self.folder / 'images'
-        folder.mkdir()
-        cv2.imwrite(str(image), texture(60, 60))
-        shutil.copy(image, folder)
-        out, gone, inside = self.folder / 'out', self.folder / 'gone', image / 'x'
-        localize, there = ('localize', '--map', folder), ['--images', folder]
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        os.mkdir('images')
+        for name in ('a.png', 'images/a.png', 'images/b.png'):
+            cv2.imwrite(name, texture(60, 60))
+        for name, text in (('pairs', 'a.png b.png\n'), ('empty', ''), ('itself', 'a.png a.png\n'), ('unknown', 'no image\n'), ('imu.csv', '1,0,0,0,0,0,9.81\n')):
+            Path(name).write_text(text)
         files = set(self.folder.rglob('*'))
-        for told, *arguments in (
-                ('there is no file', 'match', image, gone), ('there is no file', 'match', gone, image), ('is a folder', 'match', image, folder),
-                ('there is no file', 'demo', gone, image), ('is a folder', 'demo', image, folder), ('an input too', 'demo', image, image, '--out', image),
-                ('an input too', 'match', image, image, '--out', image), ('another output', 'match', image, image, '--out', out, '--picture', out),
-                ('there is no folder', 'match', image, image, '--out', gone / 'x.csv'), ('is a folder', 'match', image, image, '--out', folder),
-                ('there is no folder', 'match', '--pairs', image, '--images', gone, '--out', out),
-                ('there is no file', 'align', gone, image, '--out', out), ('there is no file', 'align', image, gone, '--out', out),
-                ('no image is called', 'align', image, folder / '*.jpg', '--out', out), ('is a folder', 'align', folder, image, '--out', out),
-                ('known are a folder; one with a suffix', 'align', image, folder, '--out', self.folder / 'x.zip'), ('known are a folder', 'align', image, folder, '--out', '-'),
-                ('is a file', 'align', image, folder, '--out', image), ('is a file', 'align', image, folder, '--out', inside),
-                ('would be replaced', 'align', image, folder / 'a.png', '--out', folder),
-                ('there is no folder', 'colmap', gone, self.folder / 'x.db'), ('there is no folder', 'colmap', folder, gone / 'x.db'),
-                ('is a folder', 'colmap', folder, folder), ('an input too', 'colmap', folder, folder / 'a.png', '--force'),
-                ('there is no database', 'hloc', gone, self.folder / 'f.h5', self.folder / 'm.h5', self.folder / 'p'),
-                ('there is no folder', 'hloc', image, gone / 'f.h5', self.folder / 'm.h5', self.folder / 'p'),
-                ('an input too', 'hloc', image, image, self.folder / 'm.h5', self.folder / 'p'),
-                ('there is no folder', 'map', '--model', gone, *there, '--out', out), ('there is no folder', 'map', '--model', folder, '--images', gone, '--out', out),
-                ('is a file', 'map', '--model', folder, *there, '--out', image), ('is a file', 'map', '--model', folder, *there, '--out', inside),
-                ('there is no folder', 'localize', '--map', gone, *there, '--out', out), ('there is no folder', *localize, '--images', gone, '--out', out),
-                ('known are a folder, X.csv and -; one with a suffix', *localize, *there, '--out', self.folder / 'poses.json'),
-                ('known are a folder; one with a suffix', 'map', '--model', folder, *there, '--out', self.folder / 'x.zip'), ('is a file', *localize, *there, '--out', inside),
-                ('there is no folder', *localize, *there, '--out', gone / 'x.csv'), ('would be replaced', *localize, *there, '--out', folder),
-                ('there is no folder', 'localize', '--map', gone, '--images', '-'), ('there is no file', *localize, *there, '--out', out, '--imu', gone),
-                ('there is no folder', 'update', '--map', gone, *there), ('there is no folder', 'update', '--map', folder, '--images', gone),
-                ('is a file', 'update', '--map', folder, *there, '--out', image)):
-            with self.subTest(arguments):
-                status, out_, errors = run_command(*arguments)
-                self.assertRegex(errors, rf'^{arguments[0]}: [^\n]*{re.escape(told)}[^\n]*\n$')
-                self.assertEqual((status, out_), (2, ''))
-                self.assertEqual(set(self.folder.rglob('*')), files)
+        pairs, localize = 'match --images images --pairs', 'localize --map images --images images --out'
+        for message, commands in {
+                'there is no file': f'match a.png gone, match gone a.png, demo gone a.png, align gone a.png --out out, align a.png gone --out out, '
+                                    f'align a.png a.png gone --out out, {localize} out --imu gone',
+                'no image is called': 'align a.png images/*.jpg --out out',
+                'is a folder': 'match a.png images, match a.png a.png --out images, demo a.png images, align images a.png --out out, colmap images images',
+                'there is no folder': f'match a.png a.png --out gone/x.csv, match a.png a.png --picture gone/x.png, match --pairs pairs --images gone --out out, '
+                                      f'colmap gone x.db, colmap images gone/x.db, hloc a.png gone/f.h5 m.h5 p, map --model gone --images images --out out, '
+                                      f'map --model images --images gone --out out, localize --map gone --images images --out out, '
+                                      f'localize --map images --images gone --out out, {localize} gone/x.csv, localize --map gone --images -, '
+                                      f'update --map gone --images images, update --map images --images gone',
+                'is a file': f'align a.png images --out a.png, align a.png images --out a.png/x, {pairs} pairs --out pairs, map --model images --images images --out a.png, '
+                             f'map --model images --images images --out a.png/x, {localize} a.png/x, update --map images --images images --out a.png',
+                'an input too': f'demo a.png a.png --out a.png, match a.png a.png --out a.png, match images/a.png images/a.png --mask a.png --picture a.png, '
+                                f'match images/a.png images/a.png --mask a.png --out a.png, demo images/a.png images/a.png --mask a.png --out a.png, '
+                                f'colmap images images/a.png --force, colmap images a.png --force --mask a.png, hloc a.png a.png m.h5 p, {localize} imu.csv --imu imu.csv',
+                'another output': 'match a.png a.png --out out --picture out',
+                'would be replaced': f'align a.png images/a.png --out images, align a.png images --out images, align a.png images/* --out images, {localize} images',
+                'cannot be written': f'demo a.png a.png --out {"m" * 300}.png',
+                r'end its name in \.csv, \.json or \.npz': ', '.join(f'match a.png a.png --out {name}' for name in ('x.h5', 'x.png', 'x.npy', 'x.parquet', 'x')),
+                r'in \.h5 or \.hdf5': ', '.join(f'{pairs} pairs --out {name}' for name in ('-', '/dev/stdout', 'x.json', 'x.csv', 'x.parquet')),
+                'end its name in .png': ', '.join([f'match a.png a.png --picture {name}' for name in ('no.suffix', 'x.exr', 'x.pgm')]
+                                                  + [f'demo a.png a.png --out {name}' for name in ('x.foo', 'x.exr')]),
+                'known are a folder, X.csv and -; one with a suffix': f'{localize} poses.json',
+                'known are a folder; one with a suffix': 'align a.png images --out x.zip, align a.png images --out -, map --model images --images images --out x.zip',
+                'there is no database': 'hloc gone f.h5 m.h5 p',
+                'there is no list|neither a file nor': f'{pairs} gone --out out, colmap images x.db --pairs gone',
+                'has no pair': f'{pairs} empty --out out, colmap images x.db --pairs empty',
+                'a.png is paired with itself': f'{pairs} itself --out out, colmap images x.db --pairs itself',
+                'no image is called no or image': f'{pairs} unknown --out out, colmap images x.db --pairs unknown',
+                'goes with': f'match --pairs pairs, {pairs} pairs, {pairs} pairs --out out a.png, {pairs} pairs --out out --picture x',
+                '60 x 60': 'match a.png a.png --camera PINHOLE;9;9;400;400;4;4',
+                'its camera has 9 x 9': f'{pairs} pairs --out out --camera PINHOLE;9;9;5;5;4;4'}.items():
+            for command in commands.split(', '):
+                with self.subTest(command), mock.patch('opencv_iib.features.Features.__call__', side_effect=AssertionError):
+                    status, out, errors = run_command(*command.replace(';', ',').split())
+                    self.assertRegex(errors, rf'^{command.split()[0]}: [^\n]*(?:{message})[^\n]*\n$')
+                    self.assertEqual((status, out), (2, ''))
+                    self.assertEqual(set(self.folder.rglob('*')), files)
 
 
 if __name__ == '__main__':

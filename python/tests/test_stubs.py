@@ -35,10 +35,10 @@ UNREADABLE = {
 
 
 def is_readable(line):
-    """Whether stubtest means it."""
-    name, _, told = line.partition(' ')
+    """Whether stubtest can read what the line is about."""
+    name, _, text = line.partition(' ')
     value = pydoc.locate(name)
-    return not any(re.fullmatch(message, told) and is_it(value) for message, is_it in UNREADABLE.items())
+    return not any(re.fullmatch(message, text) and is_it(value) for message, is_it in UNREADABLE.items())
 
 
 class Stubs(unittest.TestCase):

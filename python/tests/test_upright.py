@@ -153,13 +153,13 @@ class Commands(Collection):
         outs = [self.folder / 'out', *([self.folder / 'x.h5'] if h5py else [])]
         for out in outs:
             self.assertEqual(run_command('match', '--pairs', self.folder / 'pairs.txt', '--images', self.folder, '--out', out, '--points', 300)[0], 0)
-        told = [json.loads((self.folder / 'm.json').read_text())['rotation'], float(np.load(self.folder / 'm.npz')['rotation'])]
+        reported = [json.loads((self.folder / 'm.json').read_text())['rotation'], float(np.load(self.folder / 'm.npz')['rotation'])]
         with open(outs[0] / 'pairs.csv', newline='') as file:
-            told.append(float(next(csv.DictReader(file))['rotation']))
+            reported.append(float(next(csv.DictReader(file))['rotation']))
         if h5py:
             with h5py.File(outs[1]) as file:
-                told.append(float(file['a.png/b.png'].attrs['rotation']))
-        np.testing.assert_allclose(told, turned.rotation, rtol=1e-9)
+                reported.append(float(file['a.png/b.png'].attrs['rotation']))
+        np.testing.assert_allclose(reported, turned.rotation, rtol=1e-9)
         noise = np.random.default_rng(1).integers(0, 256, self.a.shape, np.uint8)
         cv2.imwrite(str(b), noise)
         self.assertEqual(match_images(a, b).rotation, 0)

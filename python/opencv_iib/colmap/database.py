@@ -1,7 +1,7 @@
 """COLMAP's database file: the schema of COLMAP 3.8, which every later version upgrades when it opens it.
 
-While it is made it is called ``NAME.partial`` and has tables of its own, for the codes, the state of the image files and
-the settings; finish() makes a copy without the codes, which gets the name in one step. A later run grows from that.
+An unfinished one is called ``NAME.partial`` and has further tables: codes, stamps of the image files, and settings. finish() copies it
+without the codes and gives it its name in one step. A later run extends that.
 """
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from typing import Any, Iterator, Optional, Sequence
 
 import numpy as np
 
+from opencv_iib._arguments import Path
 from opencv_iib._files import replaced
 from opencv_iib._images import in_order
 from opencv_iib._partial import close_partial, open_partial
@@ -56,11 +57,11 @@ UNCALIBRATED = 3  # COLMAP's TwoViewGeometry::UNCALIBRATED
 
 
 class SettingsChanged(ValueError):
-    """A database cannot be gone on with: it was begun with other settings or images."""
+    """A database cannot be extended: it was begun with other settings or images."""
 
     def __init__(self, path: str, differences: str) -> None:
-        """:param differences: names of settings with both values."""
-        super().__init__(f'{path} was begun with other settings ({differences}): go on as it was begun, or begin anew with force (--force)')
+        """:param differences: names of settings, each with both values."""
+        super().__init__(f'{path} was begun with other settings ({differences}): use these again, or begin anew with force (--force)')
 
 
 def check_settings(path: str, old: dict[str, Any], new: dict[str, Any]) -> None:
@@ -70,10 +71,15 @@ def check_settings(path: str, old: dict[str, Any], new: dict[str, Any]) -> None:
         raise SettingsChanged(path, ', '.join(different))
 
 
+def opened(path: Path) -> contextlib.closing[sqlite3.Connection]:
+    """A finished database, to read."""
+    return contextlib.closing(sqlite3.connect(f'{pathlib.Path(path).absolute().as_uri()}?mode=ro', uri=True))
+
+
 def settings_of(path: str) -> Optional[dict[str, Any]]:
-    """What a finished database was made with; None of another file."""
+    """The settings of a finished database; None for another file."""
     try:
-        with contextlib.closing(sqlite3.connect(f'{pathlib.Path(path).absolute().as_uri()}?mode=ro', uri=True)) as db:
+        with opened(path) as db:
             return dict(json.loads(db.execute('SELECT settings FROM iib_settings').fetchone()[0]))
     except (sqlite3.Error, TypeError, ValueError):
         return None
@@ -85,18 +91,16 @@ def pair_id(a: int, b: int) -> int:
 
 
 class Database(contextlib.AbstractContextManager['Database']):
-    """A database in the making. One process at a time, and one thread of it, uses it."""
+    """An unfinished database, for one thread of one process at a time."""
 
     def __init__(self, path: str, settings: dict[str, Any], force: bool = False) -> None:
-        """Opens ``path.partial``, as an interrupted run left it, or new: with what the finished database holds, or with `force` empty.
-
-        :param force: begin anew instead of raising.
-        :raises SettingsChanged: if these had other settings.
-        :raises FileExistsError: for a file that no such run has left.
-        """
+        """Opens ``path.partial``, which an interrupted run left, or a new one with the content of the finished database.
+        :param force: start empty, also where settings differ.
+        :raises SettingsChanged: if one of them had other settings.
+        :raises FileExistsError: for a file that is not of an interrupted run."""
         self.path, self.partial, self.force, self._finished = path, path + '.partial', force, False
         self.changed = True  #: whether it may hold other images or pairs than the finished database
-        self.finished: set[int] = set()  #: images of that one, which keep their number of keypoints for reconstructions that are there
+        self.finished: set[int] = set()  #: its images, whose number of keypoints existing reconstructions rely on
         self._db = open_partial(self.partial, 'iib_settings')
         try:
             self._begin(settings)
@@ -112,7 +116,7 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     def _begin(self, settings: dict[str, Any]) -> None:
         self._db.executescript(SCHEMA)
-        if self._db.execute('PRAGMA user_version').fetchone()[0] == 0:  # not where a newer COLMAP has been at it
+        if self._db.execute('PRAGMA user_version').fetchone()[0] == 0:  # 4000 and more after a newer COLMAP has opened it
             self._db.execute(f'PRAGMA user_version={SCHEMA_VERSION}')
         old = [json.loads(row) for row, in self._db.execute('SELECT settings FROM iib_settings')]
         if old and not self.force:
@@ -123,7 +127,7 @@ class Database(contextlib.AbstractContextManager['Database']):
             self._db.execute('INSERT INTO iib_settings VALUES (?)', (json.dumps(settings, sort_keys=True),))
 
     def _grow(self) -> None:
-        """Takes what the finished database holds, but not what a newer COLMAP has made of it when it opened it."""
+        """Copies what the finished database holds, without the columns that a newer COLMAP has added."""
         with self._transaction():
             for table, columns in (('cameras', 'camera_id, model, width, height, params, prior_focal_length'), ('images', 'image_id, name, camera_id'),
                                    ('keypoints', 'image_id, rows, cols, data'), ('matches', 'pair_id, rows, cols, data'),
@@ -136,7 +140,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         close_partial(self._db, self.partial, self._finished or not self.stamps())
 
     def finish(self) -> None:
-        """Makes the file, without the codes. Until it is whole, a later run can still go on."""
+        """Writes the finished file, without the codes."""
         with replaced(self.path) as (new,):
             with contextlib.closing(sqlite3.connect(os.fsencode(new), isolation_level=None)) as db:
                 self._db.backup(db)
@@ -147,14 +151,14 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     @contextlib.contextmanager
     def _transaction(self) -> Iterator[None]:
-        with self._db:  # which commits, or rolls back where an error has not done so, as a full disk does
+        with self._db:  # commits, or rolls back after an error, unless that has done so, as a full disk does
             self._db.execute('BEGIN')
             yield
 
     # Images
 
     def stamps(self) -> dict[str, str]:
-        """Of the files of the images that are described, by name."""
+        """Stamps of the described images' files, by name."""
         return dict(self._db.execute('SELECT name, stamp FROM iib_files'))
 
     def forget(self, name: str) -> None:
@@ -164,7 +168,7 @@ class Database(contextlib.AbstractContextManager['Database']):
             self._remove(name)
 
     def _remove(self, name: str) -> tuple[Optional[int], Optional[int]]:
-        """:return: numbers that have become free: of the image, and of its camera if no other image has it."""
+        """:return: the numbers of the image, and of its camera if no other image has that."""
         image, camera = self._db.execute('SELECT image_id, camera_id FROM images WHERE name=?', (name,)).fetchone() or (None, None)
         self._db.execute('DELETE FROM iib_files WHERE name=?', (name,))
         for table in ('images', 'keypoints', 'iib_codes'):
@@ -174,34 +178,26 @@ class Database(contextlib.AbstractContextManager['Database']):
         free = self._db.execute('DELETE FROM cameras WHERE camera_id=? AND camera_id NOT IN (SELECT camera_id FROM images)', (camera,)).rowcount
         return image, camera if free else None
 
-    def image_ids(self) -> dict[str, int]:
-        """Numbers of the images by name, in_order."""
-        return self._ids('')
-
-    def without_codes(self) -> dict[str, int]:
-        """Numbers by name of images that were described in an earlier run, whose codes are not there."""
-        return self._ids('WHERE image_id NOT IN (SELECT image_id FROM iib_codes)')
-
-    def _ids(self, where: str) -> dict[str, int]:
+    def image_ids(self, without_codes: bool = False) -> dict[str, int]:
+        """Numbers of all images by name, in_order, or of those whose codes an earlier run has dropped."""
+        where = 'WHERE image_id NOT IN (SELECT image_id FROM iib_codes)' if without_codes else ''
         return dict(sorted(self._db.execute(f'SELECT name, image_id FROM images {where}'), key=lambda row: in_order(row[0])))
 
     def add_codes(self, image: int, keypoints: np.ndarray, codes: np.ndarray) -> bool:
-        """Of an image that was described in an earlier run; False, and nothing is added, if its keypoints are others now."""
-        same = np.array_equal(self.load_keypoints(image)[:len(keypoints)], keypoints)  # then those of searches
+        """Adds the codes of an image that an earlier run has described, or returns False if its keypoints differ."""
+        same = np.array_equal(self.load_keypoints(image)[:len(keypoints)], keypoints)  # points of searches follow them
         if same:
             self._db.execute('INSERT INTO iib_codes VALUES (?, ?, ?, ?)', (image, *codes.shape, codes.tobytes()))
         return same
 
     def add_image(self, name: str, stamp: str, width: int, height: int, model: str, params: Sequence[float], prior: bool,
                   shared: bool, keypoints: np.ndarray, codes: np.ndarray) -> None:
-        """An image with its camera, keypoints and codes, in one transaction. One of this name that is there is replaced, and its numbers are kept.
-
-        :param stamp: tells whether the file is the same later.
+        """Adds an image with its camera, keypoints and codes, in one transaction, or replaces one of this name, which keeps its numbers.
+        :param stamp: of the file, to recognize it in a later run.
         :param model: one of MODELS.
-        :param shared: use a camera that is there already, if it is the same in all.
+        :param shared: use an equal camera of the database, if there is one.
         :param keypoints: N x 4 float32: x, y (pixels; the centre of the first pixel is .5), scale, angle (radians).
-        :param codes: N x bytes uint8.
-        """
+        :param codes: N x bytes uint8."""
         self.changed = True
         values = MODELS.index(model), width, height, np.array(params, np.float64).tobytes(), int(prior)
         with self._transaction():
@@ -235,19 +231,21 @@ class Database(contextlib.AbstractContextManager['Database']):
         """Whether the pair was matched, also without a match."""
         return self._db.execute('SELECT 1 FROM matches WHERE pair_id=?', (pair_id(a, b),)).fetchone() is not None
 
-    def pairs(self, least: int = 1) -> Iterator[tuple[int, int]]:
+    def pairs(self, least: int = 1, where: str = 'matches WHERE rows >= ?') -> Iterator[tuple[int, int]]:
         """Image ids of the pairs that have at least so many matches."""
-        for key, in self._db.execute('SELECT pair_id FROM matches WHERE rows >= ? ORDER BY pair_id', (least,)):
+        for key, in self._db.execute(f'SELECT pair_id FROM {where} ORDER BY pair_id', (least,)):
             yield divmod(key, MAX_IMAGE_ID)
+
+    def verified_pairs(self, least: int) -> Iterator[tuple[int, int]]:
+        """The same of verified matches of pairs that were not searched."""
+        return self.pairs(least, 'two_view_geometries WHERE rows >= ? AND pair_id NOT IN (SELECT pair_id FROM iib_searched)')
 
     def add_pair(self, a: int, b: int, matches: np.ndarray, inliers: Optional[np.ndarray] = None,
                  fundamental: Optional[np.ndarray] = None) -> None:
-        """Matches of a pair and, if they were verified here, the geometry: one transaction.
-
+        """Adds the matches of a pair and, if they were verified here, its geometry, in one transaction.
         :param matches: M x 2 indices of keypoints of a and b.
-        :param inliers: those of them that agree, M' x 2; None if COLMAP verifies.
-        :param fundamental: 3 x 3, from a to b.
-        """
+        :param inliers: M' x 2, the matches that agree; None if COLMAP verifies.
+        :param fundamental: 3 x 3, from a to b."""
         if a > b:
             a, b, matches = b, a, matches[:, ::-1]
             inliers = None if inliers is None else inliers[:, ::-1]
@@ -270,27 +268,19 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     # Pairs that were searched
 
-    def verified_pairs(self, least: int) -> Iterator[tuple[int, int]]:
-        """Image ids of the pairs that at least so many verified matches of the images as they are connect."""
-        for key, in self._db.execute('SELECT pair_id FROM two_view_geometries WHERE rows >= ? AND pair_id NOT IN '
-                                     '(SELECT pair_id FROM iib_searched) ORDER BY pair_id', (least,)):
-            yield divmod(key, MAX_IMAGE_ID)
-
     def was_found(self, a: int, b: int) -> Optional[bool]:
-        """None if the pair was not searched."""
+        """Whether a search has matched the pair; None: it was not searched."""
         row = self._db.execute('SELECT found FROM iib_searched WHERE pair_id=?', (pair_id(a, b),)).fetchone()
         return row and bool(row[0])
 
     def add_not_found(self, a: int, b: int) -> None:
-        """A pair that was searched keeps the matches that it has."""
+        """Marks a pair as searched, and keeps the matches that it has."""
         self._db.execute('INSERT INTO iib_searched VALUES (?, 0)', (pair_id(a, b),))
 
     def add_found(self, pair: tuple[int, int], keypoints: Sequence[np.ndarray], matches: np.ndarray, fundamental: np.ndarray) -> None:
-        """Matches that a search has found, in place of those that the pair has: one transaction.
-
+        """Replaces the matches of a pair by those of a search, in one transaction.
         :param pair: the smaller number first.
-        :param keypoints: of both images: those that they have, then new ones.
-        """
+        :param keypoints: of both images: the old ones, then new ones."""
         with self._transaction():
             for image, rows in zip(pair, keypoints):
                 self._db.execute('UPDATE keypoints SET rows=?, data=? WHERE image_id=?', (len(rows), rows.tobytes(), image))
@@ -299,13 +289,7 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     def counts(self) -> dict[str, int]:
         """Images, keypoints, pairs that were matched, those with matches, matches, verified pairs and verified matches."""
-        def one(sql: str) -> int:
-            return int(self._db.execute(sql).fetchone()[0] or 0)
-
-        return {'images': one('SELECT COUNT(*) FROM images'),
-                'keypoints': one('SELECT SUM(rows) FROM keypoints'),
-                'pairs': one('SELECT COUNT(*) FROM matches'),
-                'pairs with matches': one('SELECT COUNT(*) FROM matches WHERE rows > 0'),
-                'matches': one('SELECT SUM(rows) FROM matches'),
-                'verified pairs': one('SELECT COUNT(*) FROM two_view_geometries WHERE rows > 0'),
-                'verified matches': one('SELECT SUM(rows) FROM two_view_geometries')}
+        wanted = {'images': 'COUNT(*) FROM images', 'keypoints': 'SUM(rows) FROM keypoints', 'pairs': 'COUNT(*) FROM matches',
+                  'pairs with matches': 'COUNT(*) FROM matches WHERE rows > 0', 'matches': 'SUM(rows) FROM matches',
+                  'verified pairs': 'COUNT(*) FROM two_view_geometries WHERE rows > 0', 'verified matches': 'SUM(rows) FROM two_view_geometries'}
+        return {name: self._db.execute(f'SELECT {what}').fetchone()[0] or 0 for name, what in wanted.items()}

@@ -1,9 +1,7 @@
 """From a COLMAP database to the HDF5 files of hloc (Hierarchical-Localization)."""
 from __future__ import annotations
 
-import contextlib
 import os
-import pathlib
 import sqlite3
 
 import numpy as np
@@ -13,22 +11,20 @@ from opencv_iib._files import check_outputs, output_file, replaced
 from opencv_iib._hdf5 import new_hdf5
 from opencv_iib._images import is_listable
 from opencv_iib._pairs import pair_name
-from opencv_iib.colmap.database import MAX_IMAGE_ID
+from opencv_iib.colmap.database import MAX_IMAGE_ID, opened
 
 SHORT = 2 ** 15 - 1  # hloc's own files hold int16; its readers take any integers
 
 
 def _write_features(connection: sqlite3.Connection, path: str) -> tuple[dict[int, str], dict[int, int]]:
-    """:return: names of the images, and how many keypoints they have, by number."""
+    """:return: names of the images, and their numbers of keypoints, by the images' numbers."""
     names, counts = {}, {}
     with new_hdf5(path) as file:
-        for number, name, width, height in connection.execute(
-                'SELECT image_id, name, width, height FROM images NATURAL JOIN cameras'):
-            rows, cols, data = connection.execute('SELECT rows, cols, data FROM keypoints WHERE image_id=?',
-                                                  (number,)).fetchone()
+        for number, name, width, height, cols, data in connection.execute(
+                'SELECT image_id, name, width, height, cols, data FROM images NATURAL JOIN cameras JOIN keypoints USING (image_id)'):
             if not is_listable(name):
                 raise ValueError(f'{name}: hloc\'s lists hold no names with blanks or a leading #; rename it')
-            points = np.frombuffer(data, np.float32).reshape(rows, cols)[:, :2] - np.float32(.5)
+            points = np.frombuffer(data, np.float32).reshape(-1, cols)[:, :2] - np.float32(.5)
             names[number], counts[number] = name, len(points)
             group = file.create_group(name)
             group['keypoints'] = points
@@ -37,12 +33,9 @@ def _write_features(connection: sqlite3.Connection, path: str) -> tuple[dict[int
     return names, counts
 
 
-def _write_matches(connection: sqlite3.Connection, path: str, pairs: str, names: dict[int, str], counts: dict[int, int]
-                   ) -> int:
-    """:return: number of pairs."""
-    verified = connection.execute('SELECT COUNT(*) FROM two_view_geometries').fetchone()[0]  # of refused pairs too
-    table = 'two_view_geometries' if verified else 'matches'
-    total = 0
+def _write_matches(connection: sqlite3.Connection, path: str, pairs: str, names: dict[int, str], counts: dict[int, int]) -> int:
+    verified = connection.execute('SELECT COUNT(*) FROM two_view_geometries').fetchone()[0]  # pairs that were refused count too
+    table, total = 'two_view_geometries' if verified else 'matches', 0
     with new_hdf5(path) as file, open(pairs, 'w', encoding='utf-8') as listing:
         for key, data in connection.execute(f'SELECT pair_id, data FROM {table} WHERE rows > 0'):
             a, b = divmod(key, MAX_IMAGE_ID)
@@ -59,20 +52,17 @@ def _write_matches(connection: sqlite3.Connection, path: str, pairs: str, names:
 
 def export(database: Path, features: Path, matches: Path, pairs: Path, force: bool = False) -> int:
     """Writes keypoints, matches and the list of pairs as hloc's reconstruction and localization read them.
-
-    :param database: what build_database wrote; of verified pairs the matches that agree, none of a pair that was refused; all
-        where nothing was verified.
-    :param features: HDF5 to write: for each image ``keypoints`` (N x 2; the centre of the first pixel is 0),
-        ``scores`` (N, ones) and ``image_size`` (width, height).
-    :param matches: HDF5 to write: for each pair ``matches0`` (N; index or -1; int16 up to 32767 keypoints in the
-        second image, int32 above) and ``matching_scores0`` (N).
+    :param database: what build_database wrote. If its pairs are verified, only matches that agree are exported.
+    :param features: HDF5 to write: for each image ``keypoints`` (N x 2; the centre of the first pixel is 0), ``scores`` (N, ones) and
+        ``image_size`` (width, height).
+    :param matches: HDF5 to write: for each pair ``matches0`` (N; index or -1; int16 up to 32767 keypoints in the second image, int32 above)
+        and ``matching_scores0`` (N).
     :param pairs: text file to write, two names a line.
     :return: number of pairs.
     :raises FileExistsError: for a file that is there, unless force is set, and for the database.
     :raises ValueError: for an image's name that the list of pairs cannot hold, or one file given twice.
 
-    Files that are there are replaced when all three are complete.
-    """
+    Files that are there are replaced when all three are complete."""
     paths = [output_file(os.fspath(path)) for path in (features, matches, pairs)]
     check_outputs(paths, [database])
     for path in paths:
@@ -80,6 +70,5 @@ def export(database: Path, features: Path, matches: Path, pairs: Path, force: bo
             raise FileExistsError(f'{path} is there already: remove it, or pass force (--force)')
     if not os.path.isfile(database):
         raise MissingFile(f'there is no database {os.fspath(database)}')
-    with contextlib.closing(sqlite3.connect(f'{pathlib.Path(database).absolute().as_uri()}?mode=ro', uri=True)) as connection, \
-            replaced(*paths) as (new_features, new_matches, new_pairs):
+    with opened(database) as connection, replaced(*paths) as (new_features, new_matches, new_pairs):
         return _write_matches(connection, new_matches, new_pairs, *_write_features(connection, new_features))

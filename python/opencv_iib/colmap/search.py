@@ -1,7 +1,7 @@
-"""Joins images that do not match as they are, since they were taken from nearer, rotated or from the side.
+"""Connects images that do not match as they are, because they were taken from nearer, rotated or from the side.
 
-An image keeps one set of keypoints. Pairs that connect groups of images are searched by matchViews; where it finds points that are no
-keypoints yet, they are added behind those of the image. So ordinary pairs, which are matched before, have the matches that they had.
+Pairs of images from different groups are matched by matchViews. Points that are not keypoints yet are appended to those of the image, so
+matches of ordinary pairs, which refer to keypoints by number, stay as they are.
 """
 from __future__ import annotations
 
@@ -28,30 +28,30 @@ from opencv_iib.views import matchViews
 Pair = tuple[int, int]
 
 CONNECTED = 30  # verified matches of two images by which COLMAP registers one after the other
-VOTERS, VOTING_SIZE = 100, 640  # strongest points of a view, which vote for images; pixels of its longer side
+VOTERS, VOTING_SIZE = 100, 640  # strongest points of a view, which vote for images; pixels of the view's longer side
 SCALES, ANGLES = (1, .5, .25), range(0, 360, 30)
 MOST_TILT = 1  # steep views would take three times as long
-LINKS, FAILURES = 2, 3  # after so many pairs of an image that were found, or were not, no other one is searched
-MOST, MOST_SHARE = 40, 1 / 60  # searches: so many, or such a share of the ordinary pairs; one takes as long as fifteen of these
-MOST_FAILURES, SHARE_FAILURES = 16, 1 / 100  # after so many without a result, or such a share, the search ends
-AT_ONCE = 8  # pairs that are chosen by the results of those before; of no other number, whoever does the work
-SAME_POINT = 1.5  # pixels of the image with fewer: nearer points are one
+LINKS, FAILURES = 2, 3  # an image is searched no more after so many pairs that matched, or did not
+MOST, MOST_SHARE = 40, 1 / 60  # searches, or their share of the ordinary pairs; a search takes as long as 15 of these
+MOST_FAILURES, SHARE_FAILURES = 16, 1 / 100  # searches without a match, or their share, that end the search
+AT_ONCE = 8  # pairs a round, whose choice depends on the results of earlier rounds; the same for any number of workers
+SAME_POINT = 1.5  # pixels of the image with less detail: nearer points are one
 
 
-class Found(NamedTuple):
+class SearchResult(NamedTuple):
     """Matches of two images that agree."""
     points: tuple[np.ndarray, np.ndarray]  #: N x 2 each, pixels as COLMAP has them
-    pixels: tuple[float, float]  #: of each image, that are a pixel of the one with less detail
+    pixels: tuple[float, float]  #: for each image, how many of its pixels are one of the image with less detail
     fundamental: np.ndarray
 
 
 def _read(folder: str, options: FeatureOptions, name: str) -> tuple[np.ndarray, Optional[np.ndarray], np.ndarray]:
-    """As ImageFile.small, reduced as for its features."""
+    """ImageFile.small of an image, of the size at which it is described."""
     return ImageFile(os.path.join(folder, name)).small(options.max_size, Masks(options.mask), name)
 
 
 def describe_views(folder: str, options: FeatureOptions, job: tuple[str, bool]) -> list[np.ndarray]:
-    """Codes of the strongest points of an image, in all its views or as it is alone."""
+    """Codes of the strongest points of an image, for each of its views, or for the image as it is."""
     name, in_all = job
     image, mask, _ = _read(folder, options, name)
     extractor = IIBDescriptorExtractor.createRecommended(VOTERS)
@@ -66,8 +66,8 @@ def describe_views(folder: str, options: FeatureOptions, job: tuple[str, bool]) 
     return codes
 
 
-def search_pair(folder: str, options: FeatureOptions, names: tuple[str, str]) -> Optional[Found]:
-    """None where the images do not match in any view."""
+def search_pair(folder: str, options: FeatureOptions, names: tuple[str, str]) -> Optional[SearchResult]:
+    """The matches of two images in views of them; None if there are none."""
     (image_a, mask_a, scale_a), (image_b, mask_b, scale_b) = (_read(folder, options, name) for name in names)
     found = matchViews(image_a, image_b, options.points, MOST_TILT, mask1=mask_a, mask2=mask_b)
     a, b = (found.points1 + .5) * scale_a, (found.points2 + .5) * scale_b
@@ -75,11 +75,11 @@ def search_pair(folder: str, options: FeatureOptions, names: tuple[str, str]) ->
     if found.view is None or matrix is None:
         return None
     zoom = float(np.sqrt(abs(np.linalg.det(found.view[:2, :2])) * scale_b.prod() / scale_a.prod()))
-    return Found((a[inliers], b[inliers]), (max(1, 1 / zoom), max(1, zoom)), matrix)
+    return SearchResult((a[inliers], b[inliers]), (max(1, 1 / zoom), max(1, zoom)), matrix)
 
 
 def groups(images: Iterable[int], pairs: Iterable[Pair]) -> dict[int, int]:
-    """The group of each image: those that pairs connect are in one."""
+    """The group of each image: pairs connect the images of a group."""
     above = {image: image for image in images}
 
     def top(image: int) -> int:
@@ -92,15 +92,15 @@ def groups(images: Iterable[int], pairs: Iterable[Pair]) -> dict[int, int]:
     return {image: top(image) for image in above}
 
 
-def candidates(folder: str, options: FeatureOptions, names: dict[int, str], group: dict[int, int], crew: Threads) -> list[Pair]:
-    """Pairs of images of different groups, first those for which most codes of one view of an image vote."""
+def candidates(folder: str, options: FeatureOptions, names: dict[int, str], group: dict[int, int], workers: Threads) -> list[Pair]:
+    """Pairs of images from different groups, ordered by how many codes of a view of one vote for the other."""
     sizes = IIBDescriptorExtractor.createRecommended().levelSizes()
     progress = Progress('comparing views', 2 * len(names))
     upright: dict[int, np.ndarray] = {}
     scores: dict[Pair, float] = {}
 
     @functools.lru_cache(maxsize=1)
-    def electorate(of: int) -> tuple[list[int], HierarchicalMatcher]:
+    def matcher_of_others(of: int) -> tuple[list[int], HierarchicalMatcher]:
         others, matcher = [image for image in names if group[image] != of], HierarchicalMatcher.create(sizes)
         matcher.add([upright[image] for image in others])
         return others, matcher
@@ -108,12 +108,12 @@ def candidates(folder: str, options: FeatureOptions, names: dict[int, str], grou
     images = sorted(names, key=lambda image: (group[image], image))
     for in_all in (False, True):
         jobs = ((names[image], in_all) for image in images)
-        for image, (_, views) in zip(images, in_parallel(functools.partial(describe_views, folder, options), jobs, crew)):
+        for image, (_, views) in zip(images, in_parallel(functools.partial(describe_views, folder, options), jobs, workers)):
             progress.step()
             if not in_all:
                 upright[image] = views[0]
                 continue
-            others, matcher = electorate(group[image])
+            others, matcher = matcher_of_others(group[image])
             for codes in views:
                 voted = matcher.knnMatchArrays(codes)[2]
                 votes, expected = np.bincount(voted[voted >= 0], minlength=len(others)), max(len(codes), 1) / len(others)
@@ -125,14 +125,14 @@ def candidates(folder: str, options: FeatureOptions, names: dict[int, str], grou
 
 
 def _same_points(points: np.ndarray, keypoints: np.ndarray, radius: float) -> np.ndarray:
-    """N x 2 points to numbers of M x 2 keypoints; new numbers, from M on, where none is as near as this."""
+    """Numbers of the M x 2 keypoints within this radius of N x 2 points; new numbers, from M on, for points without one."""
     import cv2
     matches = cv2.BFMatcher(cv2.NORM_L2).match(np.ascontiguousarray(points, np.float32), np.ascontiguousarray(keypoints, np.float32))
     return np.array([match.trainIdx if match.distance <= radius else len(keypoints) + i for i, match in enumerate(matches)])
 
 
-def add_found(database: Database, pair: Pair, found: Found) -> bool:
-    """Writes the matches, and new keypoints where the image may have them; False if too few are left."""
+def add_found(database: Database, pair: Pair, found: SearchResult) -> bool:
+    """Writes the matches, with new keypoints where the image may get some; False if too few matches are left."""
     sets = [database.load_keypoints(image) for image in pair]
     if not all(map(len, sets)):
         return False
@@ -154,41 +154,37 @@ def add_found(database: Database, pair: Pair, found: Found) -> bool:
     return True
 
 
-def search_pairs(database: Database, folder: str, options: FeatureOptions, any_pair: bool, crew: Threads) -> None:
-    """Searches pairs of images that no verified pairs connect, and writes what is found.
-
-    An interrupted run goes on with the pair where it ended.
-
-    :param any_pair: also pairs that were not matched before.
-    """
+def search_pairs(database: Database, folder: str, options: FeatureOptions, any_pair: bool, workers: Threads) -> None:
+    """Matches pairs of images from groups that no verified pair connects, and writes their matches. An interrupted run continues.
+    :param any_pair: also pairs that were not matched before."""
     names, folder = {number: name for name, number in database.image_ids().items()}, os.path.abspath(folder)
     group = groups(names, database.verified_pairs(CONNECTED))
     if len(set(group.values())) < 2 or not (any_pair or any(group[a] != group[b] for a, b in database.pairs(least=0))):
         return
-    home = collections.Counter(group.values()).most_common(1)[0][0]
-    waiting = [pair for pair in candidates(folder, options, names, group, crew) if any_pair or database.has_pair(*pair)]
+    largest = collections.Counter(group.values()).most_common(1)[0][0]
+    waiting = [pair for pair in candidates(folder, options, names, group, workers) if any_pair or database.has_pair(*pair)]
     links, failures = collections.Counter[int](), collections.Counter[int]()
-    outside, ordinary = sum(of != home for of in group.values()), database.counts()['pairs']
+    outside, ordinary = sum(of != largest for of in group.values()), database.counts()['pairs']
     left, failures_left = max(MOST, MOST_SHARE * ordinary, outside), max(MOST_FAILURES, SHARE_FAILURES * ordinary)
     progress = Progress('searching', None)
 
-    def wanting(pair: Pair) -> set[int]:
-        return {image for image in pair if group[image] != home and links[image] < LINKS and failures[image] < FAILURES}
+    def unconnected(pair: Pair) -> set[int]:
+        return {image for image in pair if group[image] != largest and links[image] < LINKS and failures[image] < FAILURES}
 
     while left > 0 and failures_left > 0:
         chosen: list[Pair] = []
         busy: set[int] = set()
-        waiting = sorted(filter(wanting, waiting), key=lambda pair: min(links[image] for image in wanting(pair)))
+        waiting = sorted(filter(unconnected, waiting), key=lambda pair: min(links[image] for image in unconnected(pair)))
         for pair in waiting:
-            if len(chosen) < AT_ONCE and not wanting(pair) & busy:
+            if len(chosen) < AT_ONCE and not unconnected(pair) & busy:
                 chosen.append(pair)
-                busy |= wanting(pair)
+                busy |= unconnected(pair)
         if not chosen:
             break
         waiting = [pair for pair in waiting if pair not in chosen]
         new = [pair for pair in chosen if database.was_found(*pair) is None]
         jobs = ((names[a], names[b]) for a, b in new)
-        for pair, (_, found) in zip(new, in_parallel(functools.partial(search_pair, folder, options), jobs, crew)):
+        for pair, (_, found) in zip(new, in_parallel(functools.partial(search_pair, folder, options), jobs, workers)):
             if found is None or not add_found(database, pair, found):
                 database.add_not_found(*pair)
             progress.step()

@@ -1,4 +1,4 @@
-"""Where an image was taken, in a map."""
+"""Finds where an image was taken, in a map."""
 from __future__ import annotations
 
 import os
@@ -14,16 +14,15 @@ from opencv_iib._camera import AnyCamera, Camera, as_camera, as_rows_of
 
 
 class Location:
-    """What :meth:`Localizer.localize` finds: whether there is a pose (`found`), or why not (`reason`).
+    """The result of :meth:`Localizer.localize`: `found`, and if not, the `reason`.
 
-    ``cam_from_world`` is 4 x 4, ``covariance`` 6 x 6, of the camera's centre (map's unit) and of a small turn about the world's
-    axes (radians); both are None without a pose. Of the `matches`, `inliers` agree: ``pixels``, N x 2 (the centre of the first pixel
-    is 0), show the ``points`` of the map, N x 3.
-    """
+    ``cam_from_world`` is 4 x 4, the ``covariance`` 6 x 6: of the camera's centre (map's unit) and of a small rotation about the world's
+    axes (radians). Both are None without a pose. `inliers` of the `matches` agree: ``pixels``, N x 2 (the centre of the first pixel
+    is 0), show the ``points`` of the map, N x 3."""
 
     def __init__(self, cam_from_world: Optional[ArrayLike] = None, covariance: Optional[ArrayLike] = None, reason: str = '',
                  matches: int = 0, inliers: int = 0, pixels: ArrayLike = (), points: ArrayLike = ()) -> None:
-        """A pose and its covariance that were found otherwise, for :func:`smooth_poses`; or none of them."""
+        """A pose and its covariance, such as of another method for :func:`smooth_poses`; or neither."""
         if (cam_from_world is None) != (covariance is None):
             raise ValueError('a pose and its covariance come together, or none of them')
         self.found, self.reason = cam_from_world is not None, str(reason)
@@ -51,40 +50,35 @@ def as_pose(pose: ArrayLike) -> NDArray[np.float64]:
 
 
 class Localizer:
-    """Finds images in a map. Threads may share one; a pickle holds the map's name, and reads it anew."""
+    """Localizes images in a map. Threads may share one. A pickle holds the map's name, and reads it again."""
 
     def __init__(self, map: Path, points: int = 1000, lines: bool = False) -> None:
         """Reads a map.
-
         :param map: its folder.
-        :param points: keypoints that are looked for in an image; 0: as many as in the map's images, which takes twice the time
-            and finds more in hard light.
+        :param points: keypoints of an image; 0: as many as in the map's images, which takes twice the time and finds more in hard light.
         :param lines: refine poses by lines too; the map must have been made with them.
-        :raises opencv_iib.error: for a folder without a map, or a damaged one; for lines of a map without them, or where OpenCV's module
-            line_descriptor was missing in the build.
-        """
+        :raises opencv_iib.error: for a folder without a map, and a damaged map; with `lines`, for a map without lines, and a build without
+            OpenCV's module line_descriptor."""
         self._arguments = os.path.abspath(map), integer(points, 'points'), bool(lines)
         self._core = _core.Localizer(*self._arguments)
 
     @property
     def cameras(self) -> list[Camera]:
-        """Of the map's images, each once."""
+        """The different cameras of the map's images."""
         return [Camera._of(camera) for camera in self._core.cameras()]
 
     def localize(self, image: ArrayLike, camera: AnyCamera, prior: Optional[ArrayLike] = None, orientation: int = 1,
                  mask: Optional[ArrayLike] = None) -> Location:
-        """Where an image was taken. The GIL is released meanwhile.
+        """Finds the pose of an image. The GIL is released meanwhile.
 
-        :param image: H x W or H x W x 3 (BGR) uint8, as its file stores it, not turned as EXIF may ask; so are pose and pixels.
+        :param image: H x W or H x W x 3 (BGR) uint8, as stored in its file. The pose and pixels are those of these pixels.
         :param camera: of the image's size: a Camera, ``'MODEL,WIDTH,HEIGHT,PARAMS'``, or an object like pycolmap.Camera.
-        :param prior: camera from world, 4 x 4 or 3 x 4, such as the last image's: only the two images of the map nearest to it
-            are compared, and only points within a tenth of the longer side from where the prior has them. If that gives no
-            pose, the image is looked for everywhere.
-        :param orientation: how the image is stored, by EXIF, 1, 3, 6 or 8: maps hold upright codes.
-        :param mask: H x W uint8, 0 where no points are to be found.
+        :param prior: camera from world, 4 x 4 or 3 x 4, such as the previous image's. Only the two images of the map nearest to it are
+            compared first, and only points within a tenth of the longer side from their projections. Without a pose the whole map is searched.
+        :param orientation: EXIF's, 1, 3, 6 or 8: maps hold upright codes.
+        :param mask: H x W uint8, 0 where no points may be found.
         :raises opencv_iib.error: for an image or mask of another size or type, another orientation (no camera sees a mirrored image), or an
-            invalid camera.
-        """
+            invalid camera."""
         return Location(*self._core.localize(as_image(image), as_camera(camera), None if prior is None else as_pose(prior),
                                              integer(orientation, 'orientation'), as_mask(mask)))
 

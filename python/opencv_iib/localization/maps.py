@@ -1,4 +1,4 @@
-"""Maps: made of a COLMAP model and its images, and updated with other light."""
+"""Makes maps of COLMAP models and their images, and updates maps with images in other light."""
 from __future__ import annotations
 
 import os
@@ -23,13 +23,12 @@ from opencv_iib.features import check_max_size
 from opencv_iib.localization.localizer import Location
 from opencv_iib.localization.run import images_of, locate
 
-
 LEFT_OUT = ': left out of the map'
 UNREAD = (' cannot be read' + LEFT_OUT).encode()
 
 
 def _count(file: str) -> int:
-    """Of what a binary file of COLMAP holds."""
+    """The number of entries of a binary file of COLMAP."""
     with open(file, 'rb') as opened:
         return int.from_bytes(opened.read(8), 'little')
 
@@ -45,24 +44,23 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
           mask: Optional[Path] = None, max_size: int = 0) -> dict[str, int]:
     """Finds and describes points in the images of a COLMAP model, triangulates them with its poses, and writes a map.
 
-    :param model: folder of a model, binary or text; its poses and cameras are taken as they are, in any unit.
+    :param model: folder of a model, binary or text; its poses and cameras are used as they are, in any unit.
     :param images: folder that the names of the model's images are relative to.
     :param out: folder of the map.
     :param points: at most so many keypoints an image.
     :param workers: threads; None for one a core.
-    :param force: replace a map that is there, if no image is left out. Who reads it meanwhile gets the old one or the new one.
-    :param log: told of each image that is missing, cannot be read or is of another size than its camera; the map is made without it.
-    :param lines: look for straight edges too, see Localizer.
-    :param orb_and_akaze: the paper's points and descriptor in place of the recommended ones; images are then looked for by them.
-    :param exif: images are described as upright as their EXIF data say; of those that are turned the map has the upright cameras and poses.
-    :param mask: what is described, as of Masks.
-    :param max_size: pixels of the longer side to which larger images are reduced to find and describe points; 0: they are not.
+    :param force: replace an existing map, unless an image is left out. Programs that read it meanwhile get the old one or the new one.
+    :param log: gets a line about each image that is left out: missing, unreadable or of another size than its camera.
+    :param lines: map straight edges too, see Localizer.
+    :param orb_and_akaze: the paper's points and descriptor instead of the recommended ones, also for images to be localized.
+    :param exif: images are rotated upright by their EXIF data; the map then has upright cameras and poses.
+    :param mask: a mask, or a folder of masks NAME.png.
+    :param max_size: pixels of the longer side to which larger images are reduced; 0: they are not.
     :return: counts of images, points, and images that were left out.
-    :raises InvalidOption: for no points, or more than an image can have, and if no image can be read.
+    :raises InvalidOption: for an invalid number of points, and if no image can be read.
     :raises FileExistsError: if there is a map and force is not set, or images are left out.
-    :raises FileNotFoundError: for a folder that is not there.
-    :raises opencv_iib.error: for a model that is damaged or not that of the images, and for a folder that holds other files.
-    """
+    :raises FileNotFoundError: for a missing folder.
+    :raises opencv_iib.error: for a damaged model, one of other images, and a folder with other files."""
     check_count(points, 'points')
     check_max_size(max_size)
     threads, used = _core.getNumThreads(), thread_count(workers)
@@ -74,9 +72,9 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     progress: Optional[Progress] = None
 
     masks, left_out, is_there = Masks(mask), 0, os.path.exists(os.path.join(target, 'map.iib'))
-    untold: list[str] = []  # of images that are left out, until one is read
+    unreported: list[str] = []  # lines about images that are left out, kept until one image is read
     read_any = False
-    reasons: dict[bytes, bytes] = {}  # why images cannot be read, by what is said of them there
+    reasons: dict[bytes, bytes] = {}  # why images cannot be read, by the line of the library about them
 
     def read(name: bytes) -> tuple[NDArray[np.uint8], int, NDArray[np.uint8]]:
         nonlocal read_any
@@ -97,21 +95,21 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
             raise KeyboardInterrupt
         if problem:
             left_out += 1
-            untold.append(reasons.get(problem, problem).decode(errors='backslashreplace'))
+            unreported.append(reasons.get(problem, problem).decode(errors='backslashreplace'))
             if is_there:
-                raise FileExistsError(f'{untold.pop()}, so that of {os.fspath(out)} is not replaced: choose another folder')
-        while read_any and untold:
-            log(untold.pop(0))
+                raise FileExistsError(f'{unreported.pop()}, so that of {os.fspath(out)} is not replaced: choose another folder')
+        while read_any and unreported:
+            log(unreported.pop(0))
         progress = progress or Progress('mapping', total)
         progress.step(done - progress.done)
 
-    with ThreadPoolExecutor(1) as pool:  # not in this thread, which Ctrl-C reaches
+    with ThreadPoolExecutor(1) as pool:  # so that Ctrl-C reaches this thread
         try:
             _core.setNumThreads(used)
             pool.submit(_core.buildMap, os.fspath(model), read, target, points, lines, orb_and_akaze, max_size, report).result()
         except _core.error:
-            if untold:
-                why = min(untold, key=in_order)[:-len(LEFT_OUT)]
+            if unreported:
+                why = min(unreported, key=in_order)[:-len(LEFT_OUT)]
                 raise InvalidOption(f"{os.fspath(images)} has none of the model's {left_out} images that can be read, such as {why}") from None
             raise
         finally:
@@ -126,22 +124,21 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
 def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Optional[Path] = None,
            workers: Optional[int] = None, force: bool = False, log: Callable[[str], None] = note, exif: bool = True,
            mask: Optional[Path] = None, max_size: int = 0) -> dict[str, int]:
-    """Localizes the images below a folder; those that show the map in a light that it does not know become a part of it.
+    """Localizes the images below a folder, and adds those in new light to the map.
 
-    Their own points are matched with each other's and the map's and triangulated. Codes that eight updates in a row looked
-    for and did not find are dropped, and of more than eight added images at one place the one that has not helped for
-    longest, so that a map of a place does not grow for ever. The model's own images stay.
+    Points of added images are matched with each other and the map, and triangulated. The size of a map is bounded: codes that eight
+    updates in a row did not find are dropped. If a place has more than eight added images, the one that has not helped for longest is dropped.
+    The model's own images stay.
 
     :param map: folder of a map.
-    :param camera: as localize_images takes it.
-    :param out: folder for the new map; None to replace the old one.
-    :param force: replace a map that is in `out`.
-    :param log: told of each image without a pose, and why.
-    :param exif: as localize_images takes it; so are `mask` and `max_size`. What is added is upright, and reduced.
-    :return: counts of images, of those localized, of those added, and of codes dropped.
+    :param camera: as in localize_images.
+    :param out: folder for the new map; None: replace the old one.
+    :param force: replace an existing map in `out`.
+    :param log: gets a line about each image without a pose.
+    :param exif: as in localize_images; so are `mask` and `max_size`. Added images are upright and reduced.
+    :return: counts of images, localized images, added images, and dropped codes.
     :raises FileExistsError: if there is a map in `out` and force is not set.
-    :raises opencv_iib.error: for a folder without a map, or one that another process is changing.
-    """
+    :raises opencv_iib.error: for a folder without a map, or one that another process is changing."""
     workers = thread_count(workers)
     check_max_size(max_size)
     check_is_folder(map)

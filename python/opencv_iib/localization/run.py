@@ -1,4 +1,4 @@
-"""A folder of images, localized in a map; what is written about it."""
+"""Localizes a folder of images in a map, and writes the results."""
 from __future__ import annotations
 
 import collections
@@ -21,32 +21,29 @@ from opencv_iib._files import Results, check_folder, check_is_folder, check_outp
 from opencv_iib._image_file import ImageFile, Masks, check_sizes
 from opencv_iib._images import find_images, import_cv2, is_utf8, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
-from opencv_iib._progress import Progress
+from opencv_iib._progress import with_progress
 from opencv_iib._streams import is_open_file, note
 from opencv_iib._upright import BACK
 from opencv_iib.features import check_max_size
-from opencv_iib.localization.imu_file import by_time, read_imu
+from opencv_iib.localization.imu import by_time, read_imu, smooth_poses
 from opencv_iib.localization.localizer import Localizer, Location
-from opencv_iib.localization.smoothing import smooth_poses
 
-SAME_FOCAL = .05  #: of focal lengths, which EXIF tells roughly, and COLMAP of a camera an image
+SAME_FOCAL = .05  #: relative difference of equal focal lengths: EXIF's are rough, and COLMAP may estimate one an image
 POSE = ('tx', 'ty', 'tz', 'qx', 'qy', 'qz', 'qw')  # the camera's centre, and camera to world
 FRAME = ('name', 'found', 'reason', 'matches', 'inliers')  # with which frames.csv begins
 AXES = ('x', 'y', 'z', 'rx', 'ry', 'rz')
 
-#: What finds an image: its name, pixels as its file has them, camera, EXIF's orientation and mask.
+#: Localizes an image, of its name, pixels as in its file, camera, EXIF's orientation and mask.
 Find = Callable[[str, NDArray[np.uint8], Camera, int, Optional[NDArray[np.uint8]]], Location]
 
 
 def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = (), orientation: int = 1) -> Camera:
-    """The camera of the focal length that an image's EXIF data tell, or that of its size which is known.
+    """The camera of an image: one of the map's, or one with the focal length of its EXIF data.
 
-    :param data: of the image's file.
-    :param known: cameras of a map. One of the image's size is taken, or of several that agree the middle one, if EXIF tells no focal
-        length or nearly the same.
-    :param orientation: of the image, by EXIF: a map's cameras are of upright images.
-    :raises ValueError: if there is none.
-    """
+    :param data: the image's file.
+    :param known: cameras of a map. If those of the image's size agree, the middle one is returned, unless EXIF has another focal length.
+    :param orientation: EXIF's, of the image: a map's cameras are of upright images.
+    :raises ValueError: if no camera is known."""
     known = [*known, *(camera.upright(BACK[orientation]) for camera in known if orientation in (6, 8))]
     focal = exif_focal_length(data, width, height)
     same = tuple(camera for camera in known if (camera.width, camera.height) == (width, height))
@@ -55,14 +52,14 @@ def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = 
         return common
     if focal is None:
         differ = ', which differ' if len(same) > 1 else ''
-        raise ValueError(f'its EXIF data tell no focal length, and {len(same)} cameras of the map have its size{differ}: give '
+        raise ValueError(f'its EXIF data have no focal length, and {len(same)} cameras of the map have its size{differ}: give '
                          f'--camera PINHOLE,{width},{height},F,F,{width / 2:g},{height / 2:g} with its focal length F in pixels')
     return Camera.parse(f'SIMPLE_PINHOLE,{width},{height},{focal!r},{width / 2},{height / 2}')
 
 
 @functools.lru_cache
 def _common_camera(cameras: tuple[Camera, ...]) -> Optional[Camera]:
-    """Of cameras of one size that of the middle focal length, if all have the image's corners where it has them."""
+    """Of cameras of one size the one of the middle focal length, if all project the image's corners to nearly the same places."""
     if not cameras:
         return None
     middle = sorted(cameras, key=lambda camera: camera.params[0])[len(cameras) // 2]
@@ -75,66 +72,61 @@ def _common_camera(cameras: tuple[Camera, ...]) -> Optional[Camera]:
     return middle
 
 
-def _locate(find: Find, known: Sequence[Camera], folder: Path, camera: Optional[Camera], exif: bool, masks: Masks, max_size: int, name: str
-            ) -> tuple[Camera, Location]:
-    """An image's camera, and what `find` finds in it, reduced to this longer side if it is larger; pixels are its own."""
-    file = ImageFile(os.path.join(folder, name), exif)
-    small, mask, scale = file.small(max_size, masks, name if folder else os.path.basename(name))
-    orientation = file.orientation_of_camera
-    own = camera or find_camera(file.data, file.grey.shape[1], file.grey.shape[0], known, orientation)
-    found = find(name, small, own if small is file.grey else own.resized(*small.shape[::-1]), orientation, mask)
-    if small is not file.grey:
-        found.pixels = (found.pixels + .5) * scale - .5  # the centre of the first one is 0
-    return own, found
+class _Locator:
+    """Localizes images, each with the given camera or its own."""
 
+    def __init__(self, find: Find, known: Sequence[AnyCamera], camera: Optional[AnyCamera], exif: bool, mask: Optional[Path], max_size: int,
+                 log: Callable[[str], None]) -> None:
+        """:param known: cameras of the map."""
+        self._find, self._known, self._exif, self._max_size, self._log = find, list(map(as_camera, known)), exif, max_size, log
+        self.camera, self.masks, self._reported = None if camera is None else as_camera(camera), Masks(mask), set[Camera]()
 
-def _camera_reporter(cameras: Sequence[Camera], log: Callable[[str], None]) -> Callable[[Camera], None]:
-    """What tells, once, of a camera that was taken for others of the map."""
-    told = set()
+    def __call__(self, path: str, name: str) -> tuple[Camera, Location]:
+        """An image's camera and location, in pixels of its file. :param name: the image's name among the masks."""
+        file = ImageFile(path, self._exif)
+        small, mask, scale = file.small(self._max_size, self.masks, name)
+        orientation = file.orientation_of_camera
+        own = self.camera or find_camera(file.data, file.grey.shape[1], file.grey.shape[0], self._known, orientation)
+        found = self._find(name, small, own if small is file.grey else own.resized(*small.shape[::-1]), orientation, mask)
+        if small is not file.grey:
+            found.pixels = (found.pixels + .5) * scale - .5  # the centre of the first pixel is 0
+        return own, found
 
-    def report_camera(own: Camera) -> None:
-        alike = sum((other.width, other.height) == (own.width, own.height) for other in cameras)
-        if own in cameras and own not in told and alike > 1:
-            log(f'{own.width} x {own.height} pixels: {own}, the middle one of {alike} cameras of the map, which agree')
-        told.add(own)
-    return report_camera
+    def report(self, own: Camera) -> None:
+        """Logs, once, that a camera of the map was chosen among several."""
+        count = sum((other.width, other.height) == (own.width, own.height) for other in self._known)
+        if self.camera is None and own in self._known and own not in self._reported and count > 1:
+            self._log(f'{own.width} x {own.height} pixels: {own}, the middle one of {count} cameras of the map, which agree')
+        self._reported.add(own)
 
 
 def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence[str], camera: Optional[AnyCamera],
            workers: Optional[int], log: Callable[[str], None], exif: bool, mask: Optional[Path] = None, max_size: int = 0
            ) -> Iterator[tuple[str, Optional[Camera], Any]]:
-    """Of each image in order its name, its camera and Location; None and what is wrong if it cannot be read or has no camera.
+    """Yields for each image, in order, its name, camera and Location; None and an error text if it cannot be read or has no camera.
 
-    :param find: threads call it.
+    :param find: called by several threads.
     :param known: cameras of the map.
-    :param log: told of cameras that were taken for others.
-    """
+    :param log: gets a line about a camera of the map that was chosen among several."""
     import_cv2()
-    masks = Masks(mask)
-    masks.check(names)
-    given, cameras = None if camera is None else as_camera(camera), list(map(as_camera, known))
-    check_sizes(folder, names, masks, given)
-    report_camera = _camera_reporter(cameras, log)
-    progress = Progress('localizing', len(names))
+    locator = _Locator(find, known, camera, exif, mask, max_size, log)
+    locator.masks.check(names)
+    check_sizes(folder, names, locator.masks, locator.camera)
 
     def job(name: str) -> tuple[Camera, Location]:
         check_name(name)
-        return _locate(find, cameras, folder, given, exif, masks, max_size, name)
+        return locator(os.path.join(folder, name), name)
 
-    for name, result in in_parallel(job, names, Threads(thread_count(workers)), (ValueError, OSError, error)):
+    located = in_parallel(job, names, Threads(thread_count(workers)), (ValueError, OSError, error))
+    for name, result in with_progress(located, 'localizing', len(names)):
         own, location = (None, str(result)) if isinstance(result, Exception) else result
-        if given is None and own is not None:
-            report_camera(own)
+        if own is not None:
+            locator.report(own)
         yield name, own, location
-        progress.step()
-    progress.close()
 
 
 def images_of(folder: Path, out: Path = '', log: Callable[[str], None] = note) -> list[str]:
-    """Names of the images below a folder, but for those in `out`, where results are.
-
-    :raises ValueError: if there are none.
-    """
+    """Names of the images below a folder, without those in the folder of results. :raises ValueError: if there are none."""
     check_is_folder(folder)
     inside = os.path.relpath(os.path.realpath(out), os.path.realpath(folder)).replace(os.sep, '/') if out else '..'
     names = [name for name in find_images(folder, log) if not name.startswith(inside + '/')]
@@ -144,13 +136,13 @@ def images_of(folder: Path, out: Path = '', log: Callable[[str], None] = note) -
 
 
 def check_name(name: str) -> None:
-    """:raises ValueError: for one that results cannot hold."""
+    """:raises ValueError: for a name that the results cannot hold."""
     if not is_utf8(name) or name.startswith('#') or len(name.splitlines()) > 1:
         raise ValueError('rename it, in UTF-8, without a leading # and line breaks: a trajectory cannot hold these')
 
 
 def labels_of(names: Sequence[str]) -> dict[str, str]:
-    """What stands for images in trajectories: names without extension, or with it where another would have the same."""
+    """Names of images in trajectories: without extension, unless two would be the same."""
     stems = {name: os.path.splitext(name)[0] for name in names}
     count = collections.Counter(stems.values())
     return {name: name if count[stem] > 1 or stem in stems else stem for name, stem in stems.items()}
@@ -177,7 +169,7 @@ def _numbers(cam_from_world: NDArray[np.float64]) -> list[str]:
 
 
 def _localizer(map: Path, points: int, lines: bool) -> Localizer:
-    """:raises InvalidOption: for no folder, lines of a map without them, or where OpenCV finds none."""
+    """:raises InvalidOption: for a missing folder, a map without lines, or an OpenCV that finds none."""
     check_is_folder(map)
     try:
         return Localizer(map, points, lines)
@@ -189,27 +181,23 @@ def _localizer(map: Path, points: int, lines: bool) -> Localizer:
 
 def localize_stream(map: Path, paths: Iterable[str], camera: Optional[AnyCamera] = None, lines: bool = False,
                     max_size: int = 0, exif: bool = True, mask: Optional[Path] = None, log: Callable[[str], None] = note) -> Iterator[tuple[str, bool]]:
-    """Localizes images one after another, each first where the last one was.
+    """Localizes images one after another, each first near the previous one.
 
-    :param paths: of the images, which may come from a pipe; line ends behind them are dropped.
-    :param camera: as of localize_images; so are `lines`, `max_size` and `exif`.
-    :param mask: what is described, as of Masks, by the names of images without their folders.
-    :param log: told of cameras that were taken for others.
-    :return: of each image a line, ``PATH tx ty tz qx qy qz qw`` or ``# PATH: why there is no pose``, and whether there is one.
-    """
+    :param paths: of the images, such as lines of a pipe.
+    :param camera: as in localize_images; so are `lines`, `max_size` and `exif`.
+    :param mask: a mask, or a folder of masks by the images' names without folders.
+    :param log: gets a line about a camera of the map that was chosen among several.
+    :return: yields for each image a line, ``PATH tx ty tz qx qy qz qw`` or ``# PATH: why there is no pose``, and whether it has a pose."""
     check_max_size(max_size)
-    localizer, masks = _localizer(map, 1000, lines), Masks(mask)
-    known, given, last = localizer.cameras, None if camera is None else as_camera(camera), None
-    report_camera = _camera_reporter(known, log)
+    localizer, last = _localizer(map, 1000, lines), None
+    locator = _Locator(lambda name, image, own, *more: localizer.localize(image, own, last, *more), localizer.cameras, camera, exif, mask, max_size, log)
     for path in paths:
         path = path.rstrip('\r\n')
         try:
-            if path.startswith('#'):  # would look like a failure
+            if path.startswith('#'):  # its line would look like a failure
                 raise ValueError('a path must not begin with #: write ./ before it')
-            own, location = _locate(lambda name, image, own, *more: localizer.localize(image, own, last, *more), known, '', given, exif, masks, max_size,
-                                    path)
-            if given is None:
-                report_camera(own)
+            own, location = locator(path, os.path.basename(path))
+            locator.report(own)
             last, problem = location.cam_from_world, location.reason
         except (ValueError, OSError, error) as e:
             last, problem = None, str(e)
@@ -220,24 +208,23 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
                     workers: Optional[int] = None, log: Callable[[str], None] = note, lines: bool = False, max_size: int = 0,
                     imu: Optional[Path] = None, imu_from_camera: ArrayLike = np.eye(4), exif: bool = True,
                     mask: Optional[Path] = None, sequence: bool = False) -> tuple[int, int]:
-    """Localizes the images below a folder and writes what was found.
+    """Localizes the images below a folder and writes their poses.
 
     :param map: folder of a map.
-    :param out: a name in .csv, or '-' for standard output, for the table ``frames.csv`` alone: of each image whether there is a pose, or why
-        not, its covariance and the pose. Else a folder to write: ``trajectory.txt``, ``frames.csv``, a COLMAP model of the localized images and, with
-        `pictures`, ``matches/``. Older results there are replaced.
-    :param camera: of all images, as Localizer.localize takes it; None for each one's own, by its EXIF data or the map.
+    :param out: folder to write: ``trajectory.txt``, ``frames.csv`` (each image's pose and covariance, or why it has none), a COLMAP model of the
+        localized images and, with `pictures`, ``matches/``. Older results there are replaced. A name in .csv, or '-' for standard output:
+        ``frames.csv`` alone.
+    :param camera: of all images, as in Localizer.localize; None: each one's own, by its EXIF data or the map.
     :param workers: threads; None for one a core.
-    :param log: told of each image without a pose, and why.
-    :param lines: as Localizer takes it.
+    :param log: gets a line about each image without a pose.
+    :param lines: as in Localizer.
     :param max_size: pixels of the longer side to which larger images are reduced; 0: they are not.
-    :param imu: EuRoC's imu.csv, in a map in metres, of images that are named by their times: poses are smoothed by it, see smooth_poses.
-    :param imu_from_camera: as smooth_poses takes it.
-    :param exif: images are looked for as upright as their EXIF data say; poses and cameras are those of the files' pixels.
-    :param mask: what is described, as of Masks.
-    :param sequence: images follow each other in the order of their names (2 before 10) or times: each is first looked for where the last one was.
-    :return: how many images have a pose, and of how many.
-    """
+    :param imu: EuRoC's imu.csv, which smooths the poses, see smooth_poses: for a map in metres, and images named by their times.
+    :param imu_from_camera: as in smooth_poses.
+    :param exif: images are rotated upright by their EXIF data; poses and cameras are those of the files' pixels.
+    :param mask: a mask, or a folder of masks NAME.png.
+    :param sequence: images follow each other by their names (2 before 10) or times: each is first looked for near the previous one.
+    :return: how many images have a pose, and how many there are."""
     workers, out = thread_count(workers), os.fspath(out)
     table_alone = out.lower().endswith('.csv') or is_open_file(out)
     names, times, readings = images_of(images, '' if table_alone else out, log), {}, None
@@ -258,8 +245,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     given = None if camera is None else as_camera(camera)
     check_max_size(max_size)
     frames: list[list[Any]] = []
-    cameras: list[Optional[Camera]] = []
-    found: list[Location] = []  # with their pixels alone, and not the points, which are many
+    found: list[tuple[Optional[Camera], Location]] = []  # without points, to save memory
     last: Optional[NDArray[np.float64]] = None
 
     def find_next(name: str, image: NDArray[np.uint8], camera: Camera, *more: Any) -> Location:
@@ -279,19 +265,17 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
             else:
                 log(f'{name}: {location.reason}')
             frames.append(row)
-            cameras.append(own)
-            found.append(Location(location.cam_from_world, location.covariance, location.reason, pixels=location.pixels))
-        poses = [location.cam_from_world for location in found]
+            found.append((own, Location(location.cam_from_world, location.covariance, location.reason, pixels=location.pixels)))
+        poses = [location.cam_from_world for _, location in found]
         if readings is not None:
-            poses = smoothed = smooth_poses(list(times.values()), found, readings, imu_from_camera)
+            poses = smoothed = smooth_poses(list(times.values()), [location for _, location in found], readings, imu_from_camera)
             if smoothed.reason:
                 log(smoothed.reason)
-        table = _table(frames, poses)
-        write_whole(out if results is None else results.place('frames.csv'), table)
+        write_whole(out if results is None else results.place('frames.csv'), _table(frames, poses))
         if results is not None:
             posed_lines = [f'{labels[name]} {" ".join(_numbers(pose))}\n' for name, pose in zip(names, poses) if pose is not None]
             write_whole(results.place('trajectory.txt'), ''.join([f'# name {" ".join(POSE)}\n', *posed_lines]).encode())
-            posed = [_core.PosedImage(name, own, pose, location.pixels) for name, own, pose, location in zip(names, cameras, poses, found)
+            posed = [_core.PosedImage(name, own, pose, location.pixels) for name, pose, (own, location) in zip(names, poses, found)
                      if pose is not None and own is not None]
             if posed:  # no reader takes a model of none
                 _core.writeModel(os.path.dirname([results.place(name + '.bin') for name in ('cameras', 'images', 'points3D')][0]), posed)
@@ -299,10 +283,8 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
 
 
 def _table(frames: Sequence[list[Any]], poses: Sequence[Optional[NDArray[np.float64]]]) -> bytes:
-    """A CSV of the frames, with the poses."""
-    text = io.StringIO(newline='')
-    table, covariance = csv.writer(text), [f'{a}_{b}' for n, a in enumerate(AXES) for b in AXES[n:]]
-    table.writerow([*FRAME, *covariance, *POSE])
-    for row, pose in zip(frames, poses):
-        table.writerow(row if pose is None else [*row, *[''] * (len(FRAME) + len(covariance) - len(row)), *_numbers(pose)])
+    """The frames with their poses, as CSV."""
+    text, header = io.StringIO(newline=''), [*FRAME, *(f'{a}_{b}' for n, a in enumerate(AXES) for b in AXES[n:])]
+    rows = (row if pose is None else [*row, *[''] * (len(header) - len(row)), *_numbers(pose)] for row, pose in zip(frames, poses))
+    csv.writer(text).writerows([[*header, *POSE], *rows])
     return text.getvalue().encode(errors='backslashreplace')
