@@ -52,7 +52,6 @@ add_test(NAME perf-smoke-index COMMAND opencv_perf_iib_index --perf_min_samples=
 add_test(NAME perf-smoke-geometry COMMAND opencv_perf_iib_geometry --perf_min_samples=1 --perf_force_samples=1)
 if(UNIX)
   add_test(NAME scripts COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/scripts_test.sh")
-  add_test(NAME nightly COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/nightly_test.sh")
   add_test(NAME upstream COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/upstream_test.sh")
   set_tests_properties(upstream PROPERTIES SKIP_RETURN_CODE 77)
 endif()
