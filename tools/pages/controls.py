@@ -158,17 +158,12 @@ def less(row):
 
 
 def figures():
-    """The score of the chain, of SMALL's bits, and of the better of SIFT and RootSIFT at the same points and at normalized SIFT's, with what the chain
-    has more on the same pairs; the parts of detector and descriptor in the latter; how many pairs and places."""
-    def value(row):
-        return float(row['at_5'])
-    bits, floats = ({points: max((row for key, row in found().items() if key[:2] == ('other light', points) and key[2] in names), key=value)
-                     for points in ('Hessian', 'SIFT normalized')} for names in (('IIB UNIVERSAL',), ('SIFT', 'RootSIFT')))
-    (ours, at_other), (same, other) = bits.values(), floats.values()
-    steps = {'detector': [value(ours) - value(at_other), value(same) - value(other)], 'descriptor': [value(ours) - value(same), value(at_other) - value(other)]}
-    scores = {'chain': ours, 'small': found()['other light', 'Hessian', 'IIB SMALL'], 'same_points': same, 'sift_points': other}
-    return {**{name: score(row) for name, row in scores.items()}, 'same_points_less': less(same), 'sift_points_less': less(other), 'pairs': ours['pairs'], 'places': ours['places'],
-            **{name: '%.2f' % summaries.mean(two) for name, two in steps.items()}}
+    """Scores of the chain, of SMALL's bits, and of the better of SIFT and RootSIFT at the same points and at normalized SIFT's; pairs and places."""
+    def best(points):
+        return max((row for key, row in found().items() if key[:2] == ('other light', points) and key[2] in ('SIFT', 'RootSIFT')), key=lambda row: float(row['at_5']))
+    ours = found()['other light', *CHAIN]
+    scores = {'chain': ours, 'small': found()['other light', 'Hessian', 'IIB SMALL'], 'same_points': best('Hessian'), 'sift_points': best('SIFT normalized')}
+    return {**{name: score(row) for name, row in scores.items()}, 'pairs': ours['pairs'], 'places': ours['places']}
 
 
 def by_ratio():

@@ -21,7 +21,6 @@ UNSEEN_SCENES = {'street', 'facade'}  # rendered scenes without them
 # Pairs in other light that rules for matches and poses were chosen on: sets, and seeds of places (tools/synthetic/views.py).
 CHOSEN_ON = {'walk_facade', 'strecha relit'}
 CHOSEN_SEEDS = {'1', '21', '22', '23', '31', '32'}
-REFERENCE = 'Hessian', 'IIB UNIVERSAL', 'propagated', 'findRelativePose'  # what other ways to a pose are compared with
 # Scenes that the constants of matchViews were chosen on, and one of the same place.
 CHOSEN_VIEWS = {'Herz-Jesus-P8', 'entry-P10', 'chamonix', 'courbevoie', 'boat', 'bikes', 'cam01', 'cam04', 'scene'}
 SAME_PLACE = {'iib_demo/scene', 'tilde_webcam/courbevoie'}
@@ -235,24 +234,6 @@ def summarize_gains(source, target):
     write(target, ['place', 'detector', 'pairs', 'scenes', 'gain', 'low', 'high'], lines)
 
 
-def summarize_differences(source, target):
-    """How much less than the reference each way to a pose has of the area up to 5 degrees, on the same pairs, with the interval of that."""
-    areas = collections.defaultdict(dict)
-    for row in read(source):
-        for place in light_place(row):
-            areas[(place, *(row[key] for key in ('detector', 'descriptor', 'points', 'estimator')))][
-                scene(row), row['sequence'], row['target']] = pose_area(5)(row)
-    lines = []
-    for key, each in sorted(areas.items()):
-        scenes = collections.defaultdict(list)
-        for pair in sorted(each.keys() & areas[(key[0], *REFERENCE)].keys()):
-            scenes[pair[0]].append(areas[(key[0], *REFERENCE)][pair] - each[pair])
-        every = [value for scene in scenes.values() for value in scene]
-        if every:
-            lines.append([*key, len(every), *('%.4g' % value for value in (mean(every), *interval(scenes.values())))])
-    write(target, ['place', 'detector', 'descriptor', 'points', 'estimator', 'pairs', 'less', 'low', 'high'], lines)
-
-
 def summarize_curves(source, target):
     """Right matches, recall and 1 - precision against the threshold: a step is 1/32 of the distance of unrelated descriptors."""
     groups = collections.defaultdict(list)
@@ -332,7 +313,7 @@ def summarize_uncertainty(source, target):
     write(target, ['quantity', 'data', 'pairs', 'found', 'errors', *LEVELS, 'deviation', 'score'], lines)
 
 
-OTHERS = {'differences.csv': ('estimators.csv', summarize_differences), 'gains.csv': ('detected_points.csv', summarize_gains), 'curves.csv': ('detected_points.csv', summarize_curves),
+OTHERS = {'gains.csv': ('detected_points.csv', summarize_gains), 'curves.csv': ('detected_points.csv', summarize_curves),
           'learned.csv': ('detected_points.csv', summarize_learned), 'comparison.csv': ('comparison.csv', summarize_comparison),
           'uncertainty.csv': ('uncertainty.csv', summarize_uncertainty), 'views.csv': ('views.csv', summarize_views)}
 

@@ -223,7 +223,6 @@ def estimates():
 
 
 CHAIN = 'Hessian', 'IIB UNIVERSAL'
-WAYS = ('plain', 'MAGSAC'), ('plain', 'PoseLib'), ('propagated', 'findRelativePose')  # OpenCV's, the best of others, and this project's
 
 
 def score(row):
@@ -234,7 +233,7 @@ def score(row):
 def pose_methods():
     """All methods that were measured, by what this project does and by what others do."""
     found, lines = estimates(), []
-    methods = sorted({key[0] for key in found}, key=lambda method: -float(found[(method, 'other light') + WAYS[-1]]['at_5']))
+    methods = sorted({key[0] for key in found}, key=lambda method: -float(found[method, 'other light', 'propagated', 'findRelativePose']['at_5']))
     ways = list(itertools.product(('propagated', 'refined', 'plain'), ('findRelativePose', 'PoseLib', 'MAGSAC')))
     for place, method in itertools.product(('other light', 'same light'), methods):
         rows_of = [found[(method, place, *way)] for way in ways]
@@ -290,26 +289,16 @@ def rotation_figures():
     """Recall of upright and oriented codes of rotated images."""
     turned = summaries.by(rows('robustness.csv'), 'configuration', 'target', kind='turn')
     return {'%s_%s' % (name, angle): '%.2f' % float(turned[configuration, angle]['recall']) for name, configuration, angle in (
-        ('upright', 'IIB', '15'), ('upright', 'IIB', '30'), ('oriented', 'IIB oriented', '15'), ('orb', 'ORB oriented', '15'))}
-
-
-POSE_KEYS = 'place', 'detector', 'descriptor', 'points', 'estimator'
-
-
-def compared(row, sign=1):
-    """How much less than the chain's a way to a pose has, or with -1 how much more, on the same pairs; with its interval."""
-    less = summaries.by(rows('differences.csv'), *POSE_KEYS)[tuple(row[key] for key in POSE_KEYS)]
-    return '%.3f (%.3f to %.3f)' % tuple(round(sign * float(less[key]), 3) + 0. for key in ('less', *('low', 'high')[::sign]))
+        ('upright', 'IIB', '15'), ('orb', 'ORB oriented', '15'))}
 
 
 def pose_figures():
-    """Scores of other estimators' run: of the chain in other light and in one, and of others in one light."""
+    """Scores of the chain in other light, and of SIFT and the best method in the same light; number of pairs in other light."""
     every = estimates()
-    ours, theirs, refined = (every[CHAIN, 'other light', *way] for way in (WAYS[-1], ('propagated', 'PoseLib'), ('refined', WAYS[-1][1])))
-    same = every[CHAIN, 'same light', *WAYS[-1]]
-    scores = {'chain': ours, 'refined': refined, 'chain_same': same, 'sift_same': every[('SIFT', 'SIFT'), 'same light', *WAYS[1]],
+    ours = every[CHAIN, 'other light', 'propagated', 'findRelativePose']
+    scores = {'chain': ours, 'refined': every[CHAIN, 'other light', 'refined', 'findRelativePose'], 'sift_same': every[('SIFT', 'SIFT'), 'same light', 'plain', 'PoseLib'],
               'best_same': max((row for key, row in every.items() if key[1] == 'same light'), key=lambda row: float(row['at_5']))}
-    return {**{name: '%.2f' % float(row['at_5']) for name, row in scores.items()}, 'poselib_more': compared(theirs, -1), 'pairs': ours['pairs']}
+    return {**{name: '%.2f' % float(row['at_5']) for name, row in scores.items()}, 'pairs': ours['pairs']}
 
 
 def photograph_figures():
@@ -401,15 +390,14 @@ def presets():
 
 
 def inside(level, quantity):
-    """Of quantities whose names have a part, the least and the most of a hundred errors that are inside what is told for a level, by kind of data."""
+    """Per cent of errors within the limit of a level: least and most of all kinds of data, for quantities with that name."""
     shares = [100 * float(row[level]) for row in rows('uncertainty.csv') if quantity in row['quantity'] and row[level]]
     return '%.0f to %.0f' % (min(shares), max(shares))
 
 
 def sure_figures():
-    """The least and the most of a hundred errors, by kind of data, that are inside what is estimated for a level."""
-    return {'%s_%s' % (name, level[2:]): inside(level, what) for name, what in (
-        ('pose', 'findRelativePose'), ('localizer', 'Localizer'), ('point', 'refineMatches'), ('corner', 'alignImages')) for level in ('0.5', '0.95', '0.99')}
+    """Per cent of errors within the limits of three levels."""
+    return {'%s_%s' % (name, level[2:]): inside(level, what) for name, what in (('pose', 'findRelativePose'), ('localizer', 'Localizer')) for level in ('0.5', '0.95', '0.99')}
 
 
 def uncertainty():
