@@ -41,13 +41,8 @@ if [ ! -d "$sysroot" ]; then
             -o Dir::State::status="$work/status" -o Dir::Cache="$work" -o APT::Sandbox::User="$(id -un)" \
             -o Debug::NoLocking=1 "$@"
     }
-    (
-        apt update || :  # one of several suites may be out of step for a while
-        apt -y --no-install-recommends --download-only install $packages
-    ) >"$work/log" 2>&1 || {
-        tail -n 5 "$work/log" >&2
-        exit 1
-    }
+    apt update >"$work/log" 2>&1 || :  # one of several suites may be out of step for a while
+    quietly "$work/log" apt -y --no-install-recommends --download-only install $packages
     # The files alone, in the merged layout of /usr; no maintainer script runs.
     for folder in lib bin sbin; do
         ln -s "usr/$folder" "$work/root/$folder"
