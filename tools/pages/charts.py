@@ -12,8 +12,7 @@ import tables
 import timings
 
 matplotlib.use('svg')
-matplotlib.rcParams.update({'svg.hashsalt': 'iib', 'axes.grid': True, 'grid.linewidth': .4,
-                            'figure.constrained_layout.h_pad': .1})
+matplotlib.rcParams.update({'svg.hashsalt': 'iib', 'axes.grid': True, 'grid.linewidth': .4, 'figure.constrained_layout.h_pad': .1})
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib import ft2font, ticker  # noqa: E402
 

@@ -38,8 +38,7 @@ def overview(tables):
 def detected_lines(tables):
     """What describes the points of each detector, in photographs and in rendered scenes."""
     rendered = by(tables["detected_points"], "detector", "descriptor", place="rendered")
-    lines = [(row, rendered.get((row["detector"], row["descriptor"])))
-             for row in tables["detected_points"] if row["place"] == "light"]
+    lines = [(row, rendered.get((row["detector"], row["descriptor"]))) for row in tables["detected_points"] if row["place"] == "light"]
     return sorted(lines, key=lambda line: (line[0]["detector"], -number(line[0], "correct")))
 
 
@@ -86,8 +85,7 @@ def slider(tables):
             values = [float(v) for v in row["matches"].split()]
             methods.append({"name": descriptors.METHODS[row["detector"], row["descriptor"]], "right": int(row["right"]),
                             "wrong": int(row["wrong"]), "matches": [values[i:i + 5] for i in range(0, len(values), 5)]})
-        scenes.append({"title": title, "about": about, "methods": methods,
-                       "pictures": ["pictures/%s.jpg" % name for name in (reference, target)]})
+        scenes.append({"title": title, "about": about, "methods": methods, "pictures": ["pictures/%s.jpg" % name for name in (reference, target)]})
     return scenes
 
 

@@ -43,8 +43,7 @@ def places(row):
         return [] if name in TRAINED_ON_RENDERED else ['rendered']
     if row['kind'] != 'light':
         return [row['kind'], row['sequence']]
-    return [] if row['set'] in TRAINED_ON and is_learned(name) else [
-        'natural'] * (not is_learned(name)) + ['light'] * (row['set'] not in TRAINED_ON)
+    return [] if row['set'] in TRAINED_ON and is_learned(name) else ['natural'] * (not is_learned(name)) + ['light'] * (row['set'] not in TRAINED_ON)
 
 
 def curve_places(row):
@@ -185,8 +184,7 @@ def summarize(source, target, groups_of, keys, values, *commit):
     groups = collections.defaultdict(lambda: collections.defaultdict(list))
     for row in read(source):
         for place in groups_of(row):
-            groups[(place, *(row[key] for key in keys))][scene(row)].append(
-                [value(row) for value in values.values()])
+            groups[(place, *(row[key] for key in keys))][scene(row)].append([value(row) for value in values.values()])
     lines = {tuple(row.values())[:1 + len(keys)]: list(row.values()) for row in (read(target) if target.name in KEPT else [])}
     for key, scenes in groups.items():
         every = [pair for scene in scenes.values() for pair in scene]
