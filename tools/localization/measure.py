@@ -194,9 +194,9 @@ def scene(model, folder, seen):
     points = [[*(round(float(v), 2) for v in p.xyz), int(p.color.mean())] for p in model.points3D.values() if p.track.length() > 2]
     cameras = []
 
-    def add(light, name, pose, told):
+    def add(light, name, pose, text):
         inverse, corners = np.linalg.inv(pose), np.array([[0, 0, 0], [-.4, -.3, .5], [.4, -.3, .5], [.4, .3, .5], [-.4, .3, .5]])
-        cameras.append({'light': light, 'told': '%s, %s' % (name, told), 'corners': (corners @ inverse[:3, :3].T + inverse[:3, 3]).round(2).tolist()})
+        cameras.append({'light': light, 'text': '%s, %s' % (name, text), 'corners': (corners @ inverse[:3, :3].T + inverse[:3, 3]).round(2).tolist()})
 
     for image in model.images.values():
         add('noon', image.name, np.concatenate([image.cam_from_world().matrix(), [[0, 0, 0, 1]]]), 'of the map')

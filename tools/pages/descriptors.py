@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the page tells of a descriptor besides its results."""
+"""What the page shows of a descriptor besides its results."""
 
 # Descriptors of the main table in its order, those of them that were measured, by whose code they are: the name in the results of
 # fixed points, and whose points they are shown with where these are detected.
