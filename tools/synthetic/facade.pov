@@ -9,9 +9,7 @@
 
 #declare Bay = Varied(3.4, 0.12);
 #declare Storey = Varied(2.9, 0.06);
-#declare Bays = 11;
-#declare Storeys = 6;
-#declare FrontAt = 17;
+#declare Bays = 11; #declare Storeys = 6; #declare FrontAt = 17;
 #declare White = <0.80, 0.79, 0.76>;
 #declare Panel = <Varied(0.60, 0.3), Varied(0.57, 0.3), Varied(0.51, 0.3)>;
 

@@ -5,9 +5,7 @@
 #include "lights.inc"
 #include "materials.inc"
 
-#declare Half = 7.5;
-#declare Deep = 30;
-#declare High = 6.5;
+#declare Half = 7.5; #declare Deep = 30; #declare High = 6.5;
 #declare HallSeed = seed(71 + 100 * Seed);
 #macro Any(From, To) (From + (To - From) * rand(HallSeed)) #end
 #macro AnyTint(From, To) <Any(From, To), Any(From, To), Any(From, To)> #end

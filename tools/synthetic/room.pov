@@ -6,9 +6,7 @@
 #include "materials.inc"
 #include "plants.inc"
 
-#declare HalfWidth = 2.6;
-#declare Deep = 6.2;
-#declare High = 2.75;
+#declare HalfWidth = 2.6; #declare Deep = 6.2; #declare High = 2.75;
 #declare RoomSeed = seed(41 + 100 * Seed);
 #macro Any(From, To) (From + (To - From) * rand(RoomSeed)) #end
 #macro AnyTint(From, To) <Any(From, To), Any(From, To), Any(From, To)> #end
@@ -73,8 +71,7 @@
                 #local C = AnyTint(0.3, 0.95);
                 pigment {
                     #switch (mod(Kind + Seed, 4))
-                        #case (0) gradient y turbulence 0.25 scale 1.3 * Tall
-                        translate -0.65 * Tall * y #break
+                        #case (0) gradient y turbulence 0.25 scale 1.3 * Tall translate -0.65 * Tall * y #break
                         #case (1) crackle scale 0.12 translate X #break
                         #case (2) bozo turbulence 0.8 scale 0.15 translate X #break
                         #case (3) leopard turbulence 0.3 scale 0.03 #break
