@@ -52,7 +52,6 @@ add_test(NAME perf-smoke-index COMMAND opencv_perf_iib_index --perf_min_samples=
 add_test(NAME perf-smoke-geometry COMMAND opencv_perf_iib_geometry --perf_min_samples=1 --perf_force_samples=1)
 if(UNIX)
   add_test(NAME scripts COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/scripts_test.sh")
-  add_test(NAME nightly COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/nightly_test.sh")
   add_test(NAME upstream COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/upstream_test.sh")
   set_tests_properties(upstream PROPERTIES SKIP_RETURN_CODE 77)
 endif()
@@ -86,9 +85,7 @@ if(IIB_PYTHON)
   add_test(NAME pages COMMAND "${IIB_PYTHON}" -B "${pages}/pages.py" --check)  # writing them anew changes nothing
   add_test(NAME pages-test COMMAND "${IIB_PYTHON}" -B "${pages}/test/test_pages.py")
   add_test(NAME pages-names COMMAND "${IIB_PYTHON}" -B "${pages}/test/check_names.py" "${PROJECT_BINARY_DIR}")
-  add_test(NAME pages-used COMMAND "${IIB_PYTHON}" -B "${pages}/test/use_pages.py"
-    "${PROJECT_SOURCE_DIR}/doc/results/index.html" "${PROJECT_SOURCE_DIR}/doc/localization/index.html")
-  set_tests_properties(pages pages-test pages-used PROPERTIES SKIP_REGULAR_EXPRESSION "is not installed|No module named")
+  set_tests_properties(pages pages-test PROPERTIES SKIP_REGULAR_EXPRESSION "is not installed|No module named")
   add_test(NAME mutants COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/tools/mutation/mutate.py"
     --source "${PROJECT_SOURCE_DIR}" --check)
 endif()

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <limits>
 
-//! A target; libFuzzer calls it once per input.
+//! Called by libFuzzer or replay.cpp with each input.
 extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size);
 
 //! Ends the run if the library broke a promise; the fuzzer then keeps the input.
@@ -40,6 +40,13 @@ public:
     }
 
     size_t left() const { return (size_t)(end - next); }
+    //! At most `count` bytes, as far as there are some.
+    std::string bytes(size_t count)
+    {
+        const std::string found((const char*)next, std::min(count, left()));
+        next += found.size();
+        return found;
+    }
     bool flag() { return (read<uchar>() & 1) != 0; }
 
     //! True once in n times, n <= 256: for slow cases.
@@ -95,10 +102,25 @@ template <typename Call> inline bool refused(const Call& call)
     return false;
 }
 
-//! Runs a target on an input.
-template <typename Target> inline int runTarget(const Target& target, const uchar* data, size_t size)
+//! The parameters that an object writes, as YAML below the name `object`.
+template <typename T> cv::String written(const T& object)
 {
-    ByteSource in(data, size);
-    target(in);
-    return 0;
+    cv::FileStorage fs(".yml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY);
+    fs << "object"
+       << "{";
+    object.write(fs);
+    fs << "}";
+    return fs.releaseAndGetString();
 }
+
+//! Defines a target, FUZZ_TARGET { ... }, which begins on one thread.
+#define FUZZ_TARGET                                                                                          \
+    static void fuzzTarget(ByteSource& in);                                                                  \
+    extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)                                    \
+    {                                                                                                        \
+        useThreads(1);                                                                                       \
+        ByteSource in(data, size);                                                                           \
+        fuzzTarget(in);                                                                                      \
+        return 0;                                                                                            \
+    }                                                                                                        \
+    static void fuzzTarget(ByteSource& in)

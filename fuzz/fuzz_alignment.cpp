@@ -150,11 +150,12 @@ void checkAnswer(const Mat& reference, const Mat& mask, const Mat& image, const 
     }
 }
 
-void run(ByteSource& in)
+}  // namespace
+
+FUZZ_TARGET
 {
     const int seed = in.between(0, 3), model = in.between(-in.rarely(32), ALIGN_HOMOGRAPHY);
     const Mat reference = drawPicture(in, seed, Matx33d::eye()), mask = drawMask(in, reference);
-    useThreads(1);
     if (in.flag())
     {
         const Mat image = drawPicture(in, seed, drawTransform(in)), other = drawMask(in, image);
@@ -187,7 +188,3 @@ void run(ByteSource& in)
         }
     }
 }
-
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }

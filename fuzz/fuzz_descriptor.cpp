@@ -106,7 +106,9 @@ void checkAgainstOracle(const IIB& iib, const Mat& image, const std::vector<Mat>
     FUZZ_CHECK(expected.size() == descriptors.size() && norm(expected, descriptors, NORM_INF) == 0);
 }
 
-void run(ByteSource& in)
+}  // namespace
+
+FUZZ_TARGET
 {
     Ptr<IIB> iib;
     bool mayBeRefused = false;
@@ -128,7 +130,6 @@ void run(ByteSource& in)
 
     std::vector<KeyPoint> keypoints = given, again = given;
     Mat descriptors(3, 3, CV_8U), repeated;
-    useThreads(1);
     const bool thrown = refused([&] { iib->compute(image, extra, keypoints, descriptors); });
     FUZZ_CHECK(thrown != areValid(*iib, image, extra, given));
     if (thrown)
@@ -151,7 +152,3 @@ void run(ByteSource& in)
     iib->compute(image.clone(), extra, again, repeated);
     FUZZ_CHECK(again.size() == keypoints.size() && norm(descriptors, repeated, NORM_INF) == 0);
 }
-
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }

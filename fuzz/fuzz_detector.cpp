@@ -156,7 +156,9 @@ void detectAndCompute(ByteSource& in)
     FUZZ_CHECK(descriptors.empty() || cv::norm(descriptors, expectedDescriptors, NORM_INF) == 0);
 }
 
-void run(ByteSource& in)
+}  // namespace
+
+FUZZ_TARGET
 {
     switch (in.between(0, 6))
     {
@@ -167,7 +169,3 @@ void run(ByteSource& in)
     default: normalize(in); break;
     }
 }
-
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }

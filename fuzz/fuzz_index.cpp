@@ -45,15 +45,13 @@ void checkIndex(const Ptr<HierarchicalMatcher>& matcher)
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
+FUZZ_TARGET
 {
-    useThreads(1);
-    const bool honest = size > 0 && (data[0] & 1) != 0;
-    const std::string bytes = size > 0 ? std::string((const char*)data + 1, size - 1) : std::string();
+    const bool valid = in.flag();
+    const std::string bytes = in.bytes(in.left());
     static const opencv_test::TemporaryFile file;
-    file.write(honest ? withChecksum(bytes) : bytes);
+    file.write(valid ? withChecksum(bytes) : bytes);
     Ptr<HierarchicalMatcher> matcher;
     if (!refused([&] { matcher = HierarchicalMatcher::loadIndex(file.name); }))
         checkIndex(matcher);
-    return 0;
 }

@@ -172,16 +172,11 @@ void check(const MappedIndex& index, bool filled)
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
+FUZZ_TARGET
 {
-    useThreads(1);
     static const opencv_test::TemporaryFolder folder;
-    return runTarget(
-            [](ByteSource& in) {
-                const Written written = write(in, folder.name);
-                // The first call that reads a file also checks it.
-                const bool thrown = refused([&] { check(*MappedIndex::open(folder.name), written.filled); });
-                FUZZ_CHECK(!thrown || written.mayBeRefused);
-            },
-            data, size);
+    const Written written = write(in, folder.name);
+    // The first call that reads a file also checks it.
+    const bool thrown = refused([&] { check(*MappedIndex::open(folder.name), written.filled); });
+    FUZZ_CHECK(!thrown || written.mayBeRefused);
 }

@@ -34,10 +34,9 @@ struct Subject
 {
     Ptr<HierarchicalMatcher> matcher;
     MatcherOracle model;
-    bool ofAnyWidth =
-            false;        //!< made by create() without level sizes, so that the first codes decide the width
-    ScanChunk chunk;      //!< chunk of a separate search
-    bool isKnown = true;  //!< whether the model supports the matcher's mode
+    bool ofAnyWidth = false;  //!< made without level sizes, so that the first codes decide the width
+    ScanChunk chunk;          //!< chunk of a separate search
+    bool isKnown = true;      //!< whether the model supports the matcher's mode
 
     //! Whether the matcher knows the level sizes already.
     bool knowsLevels() const
@@ -186,14 +185,9 @@ private:
     //! Writes parameters to a file and reads them into a matcher with the same codes.
     void reread(Subject& s)
     {
-        FileStorage out(".yml", FileStorage::WRITE | FileStorage::MEMORY);
-        out << "m"
-            << "{";
-        s.matcher->write(out);
-        out << "}";
-        const FileStorage saved(out.releaseAndGetString(), FileStorage::READ | FileStorage::MEMORY);
+        const FileStorage saved(written(*s.matcher), FileStorage::READ | FileStorage::MEMORY);
         const Ptr<HierarchicalMatcher> other = HierarchicalMatcher::create(std::vector<int>(1, 3));
-        other->read(saved["m"]);
+        other->read(saved["object"]);
         other->add(s.model.images);
         s.replace(other);
     }
@@ -388,12 +382,6 @@ private:
     std::vector<Mat> added;  //!< the caller's matrices
 };
 
-void run(ByteSource& in) { Session(in).run(); }
-
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size)
-{
-    useThreads(1);
-    return runTarget(run, data, size);
-}
+FUZZ_TARGET { Session(in).run(); }

@@ -12,14 +12,6 @@ namespace {
 using namespace cv;
 using namespace cv::iib;
 
-std::string drawBytes(ByteSource& in, size_t count)
-{
-    std::string bytes(std::min(count, in.left()), '\0');
-    for (char& byte : bytes)
-        byte = in.read<char>();
-    return bytes;
-}
-
 bool finite(const std::vector<Point2d>& points)
 {
     return std::all_of(points.begin(), points.end(),
@@ -62,18 +54,16 @@ void check(const std::vector<PosedImage>& images)
         checkSame(again[i], images[i]);
 }
 
-void run(ByteSource& in)
+}  // namespace
+
+FUZZ_TARGET
 {
     static const opencv_test::TemporaryFolder folders[2];  // of binary and of text files
     const bool text = in.flag();
     const std::string end = text ? ".txt" : ".bin", &folder = folders[text].name;
-    opencv_test::writeFile(folder + "/cameras" + end, drawBytes(in, in.read<ushort>()));
-    opencv_test::writeFile(folder + "/images" + end, drawBytes(in, in.left()));
+    opencv_test::writeFile(folder + "/cameras" + end, in.bytes(in.read<ushort>()));
+    opencv_test::writeFile(folder + "/images" + end, in.bytes(in.left()));
     std::vector<PosedImage> images;
     if (!refused([&] { images = readModel(folder); }))
         check(images);
 }
-
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }

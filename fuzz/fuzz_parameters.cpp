@@ -64,16 +64,6 @@ String drawTree(ByteSource& in)
     return fs.releaseAndGetString();
 }
 
-template <typename T> String written(const T& object)
-{
-    FileStorage fs(".yml", FileStorage::WRITE | FileStorage::MEMORY);
-    fs << "object"
-       << "{";
-    object.write(fs);
-    fs << "}";
-    return fs.releaseAndGetString();
-}
-
 template <typename T> void read(T& object, const FileNode& node)
 {
     const String before = written(object);
@@ -88,14 +78,12 @@ template <typename T> void read(T& object, const FileNode& node)
     FUZZ_CHECK(written(object) == after);
 }
 
-void run(ByteSource& in)
+}  // namespace
+
+FUZZ_TARGET
 {
     const FileStorage fs(drawTree(in), FileStorage::READ | FileStorage::MEMORY);
     const FileNode node = in.between(0, 15) == 15 ? fs["object"]["selection"] : fs["object"];
     read(*IIB::create(), node);
     read(*HierarchicalMatcher::create(std::vector<int>(1, 4)), node);
 }
-
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }

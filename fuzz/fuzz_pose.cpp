@@ -118,18 +118,15 @@ void checkTransform(ByteSource& in, const Mat& first, const Mat& second)
     FUZZ_CHECK(values.at<double>(values.rows - 1) >= -1e-9 * values.at<double>(0));
 }
 
-void run(ByteSource& in)
+}  // namespace
+
+FUZZ_TARGET
 {
     Mat first, second;
     drawMatches(in, first, second);
-    useThreads(1);
     const bool valid = first.rows == second.rows && arePoints(first) && arePoints(second);
     checkPose(in, first, second, valid);
     checkVerdict(in, first, second, valid);
     if (valid)
         checkTransform(in, first, second);
 }
-
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }

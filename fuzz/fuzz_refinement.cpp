@@ -78,7 +78,9 @@ void checkAdded(const std::vector<DMatch>& matches, size_t given, const Mat& sim
     }
 }
 
-void run(ByteSource& in)
+}  // namespace
+
+FUZZ_TARGET
 {
     Mat images[2];
     std::vector<KeyPoint> keypoints[2];
@@ -131,7 +133,3 @@ void run(ByteSource& in)
                equal(alone.similarities, propagated.similarities));
     checkAdded(more, matches.size(), propagated.similarities);
 }
-
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(const uchar* data, size_t size) { return runTarget(run, data, size); }

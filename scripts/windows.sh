@@ -26,16 +26,11 @@ if [ ! -d "$opencv" ]; then
     for part in TESTS PERF_TESTS EXAMPLES JAVA opencv_apps opencv_python3; do
         off="$off -DBUILD_$part=OFF"
     done
-    {
-        cmake -S "$source" -B "$opencv.build" -G Ninja "$toolchain" $off -DCMAKE_BUILD_TYPE=Release \
-            -DBUILD_LIST=core,imgproc,features2d,flann,calib3d,imgcodecs,videoio,highgui -DBUILD_PNG=ON -DBUILD_ZLIB=ON \
-            -DCPU_DISPATCH= -DOPENCV_GENERATE_PKGCONFIG=OFF &&
-            cmake --build "$opencv.build" --parallel "$jobs" &&
-            cmake --install "$opencv.build" --prefix "$opencv.new"
-    } >"$opencv.log" 2>&1 || {
-        tail -n 20 "$opencv.log" >&2
-        exit 1
-    }
+    quietly "$opencv.log" cmake -S "$source" -B "$opencv.build" -G Ninja "$toolchain" $off -DCMAKE_BUILD_TYPE=Release \
+        -DBUILD_LIST=core,imgproc,features2d,flann,calib3d,imgcodecs,videoio,highgui -DBUILD_PNG=ON -DBUILD_ZLIB=ON \
+        -DCPU_DISPATCH= -DOPENCV_GENERATE_PKGCONFIG=OFF
+    quietly "$opencv.log" cmake --build "$opencv.build" --parallel "$jobs"
+    quietly "$opencv.log" cmake --install "$opencv.build" --prefix "$opencv.new"
     mv "$opencv.new" "$opencv"
     rm -rf "$opencv.build"
 fi

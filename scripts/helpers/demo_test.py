@@ -34,8 +34,7 @@ def run(*arguments):
 def shown(arguments):
     """What the demo prints of two images, with the last lines a person reads."""
     done = run(*arguments, '--out=picture.png')
-    if done.returncode or not re.search(r'\n[^\n]*IIB[^\n]*\npicture: picture.png\n$', done.stdout) or \
-            not (folder / 'picture.png').exists():
+    if done.returncode or not re.search(r'\n[^\n]*IIB[^\n]*\npicture: picture.png\n$', done.stdout) or not (folder / 'picture.png').exists():
         wrong.append(f'{arguments}: no summary or no picture: {done}')
     (folder / 'picture.png').unlink(missing_ok=True)
     return done.stdout

@@ -126,11 +126,45 @@ build_library() {
     build_targets "$@"
 }
 
+# quietly LOG COMMAND...: prints the end of what it wrote if it fails.
+quietly() {
+    log=$1
+    shift
+    "$@" >"$log" 2>&1 || {
+        tail -n 30 "$log" >&2
+        exit 1
+    }
+}
+
+# copy_tree FOLDER: the files that git knows or would add, into an existing folder.
+copy_tree() {
+    git -C "$root" ls-files -z --cached --others --exclude-standard | tar -C "$root" --null -T - -c | tar -C "$1" -x
+}
+
 # reach_network ROOT: a system in a folder has this one's names of hosts, and of pip's index and certificates where it has its own.
 reach_network() {
     for file in /etc/resolv.conf /etc/hosts /etc/pip.conf /etc/ssl/certs/ca-certificates.crt; do
         [ ! -f $file ] || cp $file "$1$file"
     done
+}
+
+# within ROOT [NAME=VALUE]... COMMAND...: in that system, with a mount namespace of its own, so that nothing stays mounted.
+within() {
+    system=$1
+    shift
+    unshare --mount sh -c 'mount -t proc proc "$1/proc" && exec chroot "$@"' sh "$system" /usr/bin/env -i HOME=/root \
+        PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin "$@"
+}
+
+# contrib_checkout FOLDER: a repository that stands in for opencv_contrib.
+contrib_checkout() {
+    git init -q "$1"
+    git -C "$1" config user.name test
+    git -C "$1" config user.email test
+    mkdir "$1/modules"
+    echo "modules of opencv_contrib" >"$1/modules/README.md"
+    git -C "$1" add modules
+    git -C "$1" commit -q -m "A checkout of opencv_contrib"
 }
 
 project_version() { sed -n 's/^project(opencv_iib VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt"; }

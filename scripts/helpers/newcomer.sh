@@ -35,8 +35,7 @@ echo force-unsafe-io >"$work/root/etc/dpkg/dpkg.cfg.d/newcomer"
 
 home="$work/root/root"
 mkdir "$home/the repository" "$home/my project"
-git -C "$root" ls-files -z --cached --others --exclude-standard | tar -C "$root" --null -T - -c |
-    tar -C "$home/the repository" -x
+copy_tree "$home/the repository"
 cp "$root/tools/synthetic/day.png" "$root/tools/synthetic/night.png" "$home/my project"
 # The blocks as files: commands that speak of match_pair belong to the user's own project.
 "$python3" - "$root" "$home" <<'PYTHON'
@@ -84,10 +83,7 @@ PYTHON
     mv "$home/wheel.sh" "$home/commands.sh"
 }
 say "running the README's commands in $work/root"
-# A mount namespace of its own, so that nothing stays mounted.
-(unshare --mount sh -c 'mount -t proc proc "$1/proc" && exec chroot "$1" /usr/bin/env -i HOME=/root \
-    XDG_CACHE_HOME="/root/a cache" PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-    sh /root/commands.sh' sh "$work/root" </dev/null 2>&1 || touch "$work/failed") | tee "$work/log"
+(within "$work/root" "XDG_CACHE_HOME=/root/a cache" sh /root/commands.sh </dev/null 2>&1 || touch "$work/failed") | tee "$work/log"
 [ ! -e "$work/failed" ] || exit 1
 programs=2  # in Python and in C++
 [ -z "$wheel" ] || programs=1

@@ -29,15 +29,10 @@ if [ ! -f "$tree/CMakeLists.txt" ]; then
             -o Dir::State::Lists="$work/lists" -o Dir::Cache="$work" -o APT::Sandbox::User="$(id -un)" "$@"
     }
     echo "fetching the source of opencv $version with apt" >&2
-    (
-        cd "$work" &&
-            apt update &&
-            apt source --download-only --tar-only "opencv=$version" &&
-            tar -xf opencv_*.orig.tar.* -C tree --strip-components=1
-    ) >"$work/log" 2>&1 || {
-        tail -n 5 "$work/log" >&2
-        exit 1
-    }
+    cd "$work"
+    quietly log apt update
+    quietly log apt source --download-only --tar-only "opencv=$version"
+    tar -xf opencv_*.orig.tar.* -C tree --strip-components=1
     mv "$work/tree" "$tree"
 fi
 echo "$tree"

@@ -8,8 +8,7 @@ need $build_packages debhelper dpkg-dev fakeroot lintian
 folder="$build/debian"
 rm -rf "$folder"
 mkdir -p "$folder/opencv-iib"
-git -C "$root" ls-files -z --cached --others --exclude-standard | tar -C "$root" --null -T - -c |
-    tar -C "$folder/opencv-iib" -x
+copy_tree "$folder/opencv-iib"
 cd "$folder/opencv-iib"
 say "building the packages"
 dpkg-buildpackage -us -uc

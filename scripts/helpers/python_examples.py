@@ -35,8 +35,8 @@ def show(name, pictures):
     head, *cells = text.split('\n# %% ')
     print('## %s.py\n' % name)
     variables = {}
-    for told, code in [(ast.get_docstring(ast.parse(text)), head.split('"""')[2]), *(cell.split('\n', 1) for cell in cells)]:
-        print('%s\n\n```python\n%s\n```\n' % (told, code.strip()))
+    for about, code in [(ast.get_docstring(ast.parse(text)), head.split('"""')[2]), *(cell.split('\n', 1) for cell in cells)]:
+        print('%s\n\n```python\n%s\n```\n' % (about, code.strip()))
         if pictures:
             run(code, variables, pictures)
 

@@ -7,13 +7,7 @@
 git -C "$root" rev-parse --verify -q HEAD >/dev/null 2>&1 || exit 77
 contrib=$(mktemp -d)
 trap 'rm -rf "$contrib"' EXIT
-git init -q "$contrib"
-git -C "$contrib" config user.name test
-git -C "$contrib" config user.email test
-mkdir "$contrib/modules"
-echo "modules of opencv_contrib" >"$contrib/modules/README.md"
-git -C "$contrib" add modules
-git -C "$contrib" commit -q -m "A checkout of opencv_contrib"
+contrib_checkout "$contrib"
 "$root/scripts/upstream.sh" --sizes "$contrib"
 
 git -C "$root" ls-files modules/iib | grep -v "^modules/iib/test/real/" | while read -r file; do

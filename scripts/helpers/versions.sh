@@ -20,10 +20,7 @@ for suite in "$@"; do
     say "copying the working tree into $base"
     rm -rf "$base/root/opencv_iib"
     mkdir -p "$base/root/opencv_iib"
-    git -C "$root" ls-files -z --cached --others --exclude-standard | tar -C "$root" --null -T - -c | tar -C "$base/root/opencv_iib" -x
-    # A mount namespace of its own, so that nothing stays mounted.
-    unshare --mount sh -c 'mount -t proc proc "$1/proc" && exec chroot "$1" /usr/bin/env -i HOME=/root \
-        PATH=/usr/sbin:/usr/bin:/sbin:/bin sh -c "cd /root/opencv_iib && scripts/intree.sh"' \
-        sh "$base"
+    copy_tree "$base/root/opencv_iib"
+    within "$base" sh -c "cd /root/opencv_iib && scripts/intree.sh"
     say "$suite: passed"
 done

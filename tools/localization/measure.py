@@ -129,8 +129,7 @@ def street(data, work, lights):
     for step in (2, 4):
         localizer = chain(data / 'map', work / f'every {step}', step)
         for light in lights:
-            rows.append({'place': f'every {step}', 'method': 'recommended chain', 'light': light,
-                         **summary(list(localize(localizer, data / light)))})
+            rows.append({'place': f'every {step}', 'method': 'recommended chain', 'light': light, **summary(list(localize(localizer, data / light)))})
     return rows, seen, ours
 
 
@@ -164,8 +163,7 @@ def seasons(data, work, lights):
     """Night in a map of every fourth keyframe, and after updates with other lights."""
     rows, known = [], work / 'every 4/map'
     for light in ('noon', *(light for light in SEASONS if light in lights)):
-        counts = {} if light == 'noon' else update(str(known), str(data / light / 'images'),
-                                                  read_place(data / light)[0])
+        counts = {} if light == 'noon' else update(str(known), str(data / light / 'images'), read_place(data / light)[0])
         localizer = Localizer(known, POINTS)
         rows.append({'light': light, 'added': counts.get('added', 0), 'size': pycolmap.Reconstruction(known).num_images(),
                      'night': summary(list(localize(localizer, data / 'night')))})
@@ -180,8 +178,7 @@ def photographs(data, work):
         for method, make in METHODS.items():
             localizer = make(folder, work / f'{folder.name} {method}', 2)
             for light, lit in (('as they are', lambda image, name: image), ('relit', relit)):
-                rows.append({'place': folder.name, 'method': method, 'light': light,
-                             **summary(list(localize(localizer, folder, others, lit)))})
+                rows.append({'place': folder.name, 'method': method, 'light': light, **summary(list(localize(localizer, folder, others, lit)))})
     return rows
 
 
@@ -197,10 +194,9 @@ def scene(model, folder, seen):
     points = [[*(round(float(v), 2) for v in p.xyz), int(p.color.mean())] for p in model.points3D.values() if p.track.length() > 2]
     cameras = []
 
-    def add(light, name, pose, told):
+    def add(light, name, pose, text):
         inverse, corners = np.linalg.inv(pose), np.array([[0, 0, 0], [-.4, -.3, .5], [.4, -.3, .5], [.4, .3, .5], [-.4, .3, .5]])
-        cameras.append({'light': light, 'told': '%s, %s' % (name, told), 'corners': (
-            corners @ inverse[:3, :3].T + inverse[:3, 3]).round(2).tolist()})
+        cameras.append({'light': light, 'text': '%s, %s' % (name, text), 'corners': (corners @ inverse[:3, :3].T + inverse[:3, 3]).round(2).tolist()})
 
     for image in model.images.values():
         add('noon', image.name, np.concatenate([image.cam_from_world().matrix(), [[0, 0, 0, 1]]]), 'of the map')

@@ -12,8 +12,7 @@ import tables
 import timings
 
 matplotlib.use('svg')
-matplotlib.rcParams.update({'svg.hashsalt': 'iib', 'axes.grid': True, 'grid.linewidth': .4,
-                            'figure.constrained_layout.h_pad': .1})
+matplotlib.rcParams.update({'svg.hashsalt': 'iib', 'axes.grid': True, 'grid.linewidth': .4, 'figure.constrained_layout.h_pad': .1})
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib import ft2font, ticker  # noqa: E402
 
@@ -26,7 +25,7 @@ FAR = 1000  # centimetres
 WIDTH = 9  # inches, of every chart
 SCORE = 'score of poses in other light, limits up to 5 degrees'
 ENDS = {'elinewidth': .8}  # of confidence intervals
-MAKER = 'Matplotlib %s, FreeType %s' % (matplotlib.__version__, ft2font.__freetype_version__)  # on which places of texts depend
+MAKER = 'Matplotlib %s, FreeType %s' % (matplotlib.__version__, ft2font.__freetype_version__)  # text positions depend on them
 
 
 def svg(figure):
@@ -51,7 +50,7 @@ def speed():
         draw(axes[1], test, lambda name, size: (name, size), {size: size for size in (1000, 5000)}, labels)
     draw(axes[2], 'IIB_Match_match', lambda name, size: (name, 'true', size), {size: size for size in (100, 500, 1000, 10000)},
          {'EXACT': "IIB's matcher", 'BRUTE_FORCE': 'BFMatcher'})
-    axes[2].set(xscale='log', yscale='log')  # a line parallel to another takes so many times as long for any number of codes
+    axes[2].set(xscale='log', yscale='log')  # parallel lines have a constant ratio
     for axis, title, label in zip(axes, ('Describe: larger images', 'Describe: more points', 'Match'), (
             'megapixels (1000 keypoints)', 'keypoints (1280 x 720)', 'codes on either side, cross-check')):
         axis.set(title=title, xlabel=label, ylabel='ms')
@@ -67,7 +66,7 @@ def poses():
 
 
 def spread(rows, value='at_5'):
-    """Values of rows, and how far the ends of their confidence intervals are."""
+    """Values of rows, and the lengths of their confidence intervals on both sides."""
     values = np.array([[float(row[name]) for name in (value, 'low', 'high')] for row in rows]).T
     return values[0], [values[0] - values[1], values[2] - values[0]]
 
@@ -85,8 +84,8 @@ def scores(bars):
 
 
 def cost():
-    """Poses in other light over the processor time that they take, of the same pairs: each detector's line goes from few points to many. One
-    that DRAWN does not have gets a colour, and its name beside the line's end."""
+    """Scores of poses in other light over processor time, one line per detector from few points to many. A detector that is not in DRAWN gets
+    a colour, and its name beside the line's end."""
     figure, axis = plt.subplots(figsize=(5.4, 4.2), layout='constrained')  # small, so that a phone shows all of it
     lines = {}
     for (detector, points, _), ways in tables.poses_by_time().items():
@@ -111,7 +110,7 @@ def cost():
 
 
 def uncertainty():
-    """For each quantity, a curve a kind of data: confidence level, and share of the errors within the limit."""
+    """Share of errors within the limit over the confidence level, one curve per quantity."""
     rows = pd.read_csv(tables.RESULTS / 'uncertainty.csv').query('errors > 0')
     levels = list(summaries.LEVELS)
     figure, axis = plt.subplots(figsize=(WIDTH, 5), layout='constrained')
@@ -147,7 +146,7 @@ def views():
 
 
 def localization(results):
-    """Share of images by error, in centimetres: a chart a light, a line a method."""
+    """Share of images over the error in centimetres, one chart per light, one line per method."""
     colours = {'recommended chain': RED, 'SIFT, normalized image': BLUE, 'SIFT, plain image': GREY}
     rows = [row for row in results['rows'] if row['place'] == 'street' and row['method'] in colours]
     lights = [light for light in results['lights'] if any(row['errors'] for row in rows if row['light'] == light)]

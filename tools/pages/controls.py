@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 
-"""Poses by this library's points and descriptor, and by others that have the same refinement and estimator: the summaries of
-tools/evaluation's `controls`, and the tables and figures that are made of them."""
+"""Summaries, tables and figures of tools/evaluation's `controls`: poses by this library's points and descriptor, and by others with the same
+refinement and estimator."""
 import collections
 import functools
 import math
@@ -13,7 +13,7 @@ RESULTS = pathlib.Path(__file__).resolve().parents[2] / 'doc/results'
 CHAIN, OTHER = ('Hessian', 'IIB UNIVERSAL'), ('SIFT normalized', 'SIFT')
 # Kinds of places, by what was trained on walks through others of the kind and who renders them.
 GROUPS = {'trained on the kind': ('room', 'terrain'), 'same renderer': ('street', 'facade'), 'new kinds': ('yard', 'hall'), 'other renderer': ('court', 'store')}
-COUNTED = CHAIN, ('Hessian', 'SIFT'), ('SIFT normalized', 'IIB UNIVERSAL'), OTHER, ('SIFT', 'SIFT')  # whose neighbours are shown
+COUNTED = CHAIN, ('Hessian', 'SIFT'), ('SIFT normalized', 'IIB UNIVERSAL'), OTHER, ('SIFT', 'SIFT')  # methods of the table of neighbours
 WRONG = 10  # degrees
 POINTS = {'Hessian': 'HessianDetector', 'SIFT normalized': 'SIFT normalized', 'SIFT CLAHE': 'SIFT on CLAHE'}
 
@@ -34,7 +34,7 @@ def groups_of(place):
 
 
 def at_best(rows):
-    """Of one method's rows, those of the ratio that is best on the other places, for each place; and how often each ratio is chosen."""
+    """Rows of one method with the ratio that is best on the other places."""
     sums = collections.defaultdict(lambda: collections.defaultdict(float))
     for row in rows:
         sums[row['ratio']][row['set']] += area(row['error'])
@@ -44,7 +44,7 @@ def at_best(rows):
 
 
 def upper_bound(wrong, count):
-    """The 95 % bound of a rate (Clopper and Pearson): so many errors or fewer in so many tries have a chance of 5 % there."""
+    """The upper 95 % bound of a rate (Clopper and Pearson)."""
     low, high = wrong / count, 1.
     for _ in range(60):
         rate = (low + high) / 2
@@ -54,8 +54,8 @@ def upper_bound(wrong, count):
 
 
 def summarize(source, target):
-    """Of each method, with the ratio that is best on other places and with each of them: areas under the curve, what the chain has more on the same
-    pairs, and how many poses are wrong."""
+    """For each method, with the ratio that is best on other places and with each ratio: areas under the curve, the lead of the chain on the same
+    pairs, and the number of wrong poses."""
     methods = summaries.group(summaries.read(source), 'detector', 'descriptor', 'noise')
     chain = {pair_of(row): area(row['error']) for row in at_best(methods.get((*CHAIN, '0'), []))}
     lines = []
@@ -85,8 +85,8 @@ STEPS = 'below 25', '25 to 49', '50 to 99', '100 and more'
 
 
 def summarize_neighbours(source, target):
-    """By the known depth, means a pair: points that the other image shows, those of them that were detected there, too, and those whose nearest
-    descriptor is there, and the score of their poses; by kind of place, light, third of the baselines, and right neighbours of normalized SIFT."""
+    """Means per pair, by the known depth: points that the other image shows, those also detected there, those whose nearest descriptor is there,
+    and the score of poses. Grouped by kind of place, light, third of the baselines, and right neighbours of normalized SIFT."""
     rows, groups = summaries.read(source), collections.defaultdict(list)
     points = min((row['points'] for row in rows if (row['detector'], row['descriptor']) == ('SIFT', 'SIFT')), default='')
     methods = summaries.group(summaries.read(source.with_name('controls.csv')), 'detector', 'descriptor', 'noise')
@@ -113,10 +113,6 @@ def found(ratio='best', noise='0'):
     return summaries.by(summaries.read(RESULTS / 'controls.csv'), 'place', 'detector', 'descriptor', ratio=ratio, noise=noise)
 
 
-def score(row):
-    return '%.2f (%.2f to %.2f)' % tuple(float(row[name]) for name in ('at_5', 'low', 'high'))
-
-
 def columns():
     """Groups of places that were measured."""
     return [name for name in ('other light', *GROUPS) if (name, *CHAIN) in found()]
@@ -135,7 +131,7 @@ def table(shown=None):
     """Methods at their best ratio, by group of places."""
     def cell(group, method):
         row = found().get((group, *method))
-        return score(row) if row and group == 'other light' else '%.2f' % float(row['at_5']) if row else '–'
+        return summaries.score(row) if row and group == 'other light' else '%.2f' % float(row['at_5']) if row else '–'
 
     def head(group):
         return '%s, places: %s' % (group if group == 'other light' else '%s (%s)' % (', '.join(of for of in GROUPS[group] if (of, *CHAIN) in found()), group), found()[group, *CHAIN]['places'])
@@ -158,17 +154,12 @@ def less(row):
 
 
 def figures():
-    """The score of the chain, of SMALL's bits, and of the better of SIFT and RootSIFT at the same points and at normalized SIFT's, with what the chain
-    has more on the same pairs; the parts of detector and descriptor in the latter; how many pairs and places."""
-    def value(row):
-        return float(row['at_5'])
-    bits, floats = ({points: max((row for key, row in found().items() if key[:2] == ('other light', points) and key[2] in names), key=value)
-                     for points in ('Hessian', 'SIFT normalized')} for names in (('IIB UNIVERSAL',), ('SIFT', 'RootSIFT')))
-    (ours, at_other), (same, other) = bits.values(), floats.values()
-    steps = {'detector': [value(ours) - value(at_other), value(same) - value(other)], 'descriptor': [value(ours) - value(same), value(at_other) - value(other)]}
-    scores = {'chain': ours, 'small': found()['other light', 'Hessian', 'IIB SMALL'], 'same_points': same, 'sift_points': other}
-    return {**{name: score(row) for name, row in scores.items()}, 'same_points_less': less(same), 'sift_points_less': less(other), 'pairs': ours['pairs'], 'places': ours['places'],
-            **{name: '%.2f' % summaries.mean(two) for name, two in steps.items()}}
+    """Scores of the chain, of SMALL's bits, and of the better of SIFT and RootSIFT at the same points and at normalized SIFT's; pairs and places."""
+    def best(points):
+        return max((row for key, row in found().items() if key[:2] == ('other light', points) and key[2] in ('SIFT', 'RootSIFT')), key=lambda row: float(row['at_5']))
+    ours = found()['other light', *CHAIN]
+    scores = {'chain': ours, 'small': found()['other light', 'Hessian', 'IIB SMALL'], 'same_points': best('Hessian'), 'sift_points': best('SIFT normalized')}
+    return {**{name: summaries.score(row) for name, row in scores.items()}, 'pairs': ours['pairs'], 'places': ours['places']}
 
 
 def by_ratio():
@@ -186,7 +177,7 @@ def noise():
 
 
 def wrong():
-    """Poses that are called significant and are off by more than WRONG degrees, of all pairs; and poses of images of different places."""
+    """Significant poses with an error of more than WRONG degrees, and poses of images of different places."""
     lines = []
     for group in columns():
         row = found()[group, *CHAIN]
@@ -206,7 +197,7 @@ def counted():
 
 
 def neighbours():
-    """Of points that both images show by the known depth: how many are detected in both, and how many of those have the right nearest neighbour."""
+    """Points that both images show by the known depth: the share detected in both, and the share of these with the right nearest neighbour."""
     def cell(place, method, points='1000'):
         row = counted().get((place, *method, points))
         if not row:
@@ -220,7 +211,7 @@ def neighbours():
 
 
 def cause():
-    """Poses by how many right neighbours normalized SIFT has: why there is no lead where there are many."""
+    """Poses by the number of right neighbours of normalized SIFT: with many, the chain has no lead."""
     names = ['neighbours: ' + step for step in STEPS]
 
     def cell(of, method):

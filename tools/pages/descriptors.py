@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the page tells of a descriptor besides its results."""
+"""What the page shows of a descriptor besides its results."""
 
 # Descriptors of the main table in its order, those of them that were measured, by whose code they are: the name in the results of
 # fixed points, and whose points they are shown with where these are detected.
@@ -23,12 +23,10 @@ COMPARED = ("IIB", "IIB COMPACT", "IIB BALANCED", "IIB VIEWPOINT", "IIB UNIVERSA
             "BEBLID-512", "TEBLID-512", "LATCH-512")
 
 # Learned descriptors that come with their own points and are entered in learned.csv: licence of the weights.
-NETWORKS = {"XFeat": "Apache-2.0", "SuperPoint": "noncommercial research only", "ALIKE-n": "BSD-3-Clause",
-            "ALIKED-n16": "BSD-3-Clause"}
+NETWORKS = {"XFeat": "Apache-2.0", "SuperPoint": "noncommercial research only", "ALIKE-n": "BSD-3-Clause", "ALIKED-n16": "BSD-3-Clause"}
 
 # Lines of the table of turned and scaled images.
-WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented", "SIFT", "SIFT oriented",
-          "BEBLID-512", "TEBLID-512", "LATCH-512")
+WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented", "SIFT", "SIFT oriented", "BEBLID-512", "TEBLID-512", "LATCH-512")
 
 # Rows of poses: points of a detector and what describes them, as people call them.
 POSES = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("SIFT normalized", "SIFT"): "SIFT normalized",

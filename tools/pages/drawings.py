@@ -59,11 +59,11 @@ def observation():
     """The same quad by day and by night: values differ, the bits of intensity and of the gradient do not."""
     figure, both = axes(2, size=4)
     for axis, name, image in zip(both, ('day', 'night'), (DAY, NIGHT)):
-        told = [name]
+        lines = [name]
         for channel, values in (('intensity', image), ('|gx|', gradients(image)[0])):
             means, bits = quad(values)
-            told.append('%s: %s, mean %.0f: %s' % (channel, ' '.join('%.0f' % mean for mean in means), means.mean(), bits))
-        picture(axis, image, '\n'.join(told), 255)
+            lines.append('%s: %s, mean %.0f: %s' % (channel, ' '.join('%.0f' % mean for mean in means), means.mean(), bits))
+        picture(axis, image, '\n'.join(lines), 255)
         squares(axis, LEFT - .5, TOP - .5, SIDE, 2)
     return svg(figure)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 
-"""The page of localization across lights, of what tools/localization/measure.py wrote."""
+"""The page of localization across lights, from the results of tools/localization/measure.py."""
 import math
 
 import tables
@@ -14,7 +14,7 @@ def share(count, of):
 
 
 def worst(results):
-    """Of every light the worst one: how many images are how near."""
+    """Shares of images near their places in the worst light."""
     def within(place, limit):
         rows = [row for row in results['rows'] if (row['place'], row['method']) == (place, 'recommended chain')]
         return min(100 * row['within_%d' % limit] / row['images'] for row in rows)
@@ -30,12 +30,12 @@ def worst(results):
 
 
 def unseen():
-    """Of the rendered places of doc/uncertainty.md: how many images have a pose, and how many of these are inside the 95 % limit."""
+    """Rows of doc/uncertainty.md's rendered places."""
     return [row for row in tables.rows('uncertainty.csv') if row['quantity'] == 'centre of Localizer' and row['data'].startswith('rendered places')]
 
 
 def context(results, setups):
-    """What the template takes; `setups` is the file of tools/localization/setups.py."""
+    """The template's variables; `setups` is the file of tools/localization/setups.py."""
     rows = sorted((row for row in results['rows'] if row['place'] == 'street'), key=lambda row: row['method'].startswith('SIFT'))
     return {**results, 'by_light': [[row for row in rows if row['light'] == light] for light in results['lights']], 'worst': worst(results),
             'setups': [tables.localization_lights(setups), tables.quoted_systems()],

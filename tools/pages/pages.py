@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""Writes what shows figures, of the results in doc: the tables of README.md and of pages in doc and upstream, doc/results/index.html,
+"""Writes everything that shows figures from the results in doc: the tables of README.md and of pages in doc and upstream, doc/results/index.html,
 doc/localization/index.html, charts and the paper's drawings. With arguments, the page of other results alone.
 
 Needs python3-pandas, python3-jinja2 and python3-matplotlib.
@@ -30,7 +30,7 @@ def rendered(template, context):
 
 
 def results_page(folder):
-    """The files that show an evaluation, of its summaries."""
+    """The files that show the summaries of an evaluation."""
     context = results.context(folder)
     if not context:
         sys.exit('%s: no results of iib_evaluation' % folder)
@@ -43,7 +43,7 @@ def results_page(folder):
 
 
 def localization_page(folder):
-    """The files that show localization, of what was measured."""
+    """The files that show measured localization."""
     found = json.loads((folder / 'results.json').read_text())
     unseen = localization.unseen() if folder == ROOT / 'doc/localization' else []
     return {folder / 'index.html': rendered('localization.html.j2', {**localization.context(found, folder / 'localization_setups.csv'), 'unseen': unseen}),
@@ -68,7 +68,7 @@ def markdown():
 
 
 def everything():
-    """All files that are made of results, and their text."""
+    """All files made from results, and their text."""
     doc = ROOT / 'doc'
     made = {**markdown(), **results_page(tables.RESULTS), **localization_page(doc / 'localization')}
     made.update({doc / (chart.__name__ + '.svg'): chart() for chart in (charts.speed, charts.poses, charts.uncertainty, charts.views)})
@@ -76,7 +76,7 @@ def everything():
 
 
 def differs(file, text):
-    """Whether it has another text; a chart that another matplotlib made is not compared."""
+    """Whether the text differs; a chart by another version of matplotlib is not compared."""
     before = file.read_text() if file.exists() else ''
     return before != text and not (file.suffix == '.svg' and before and charts.MAKER not in before)
 

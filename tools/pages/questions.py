@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 
-"""Tables and figures of doc/questions.md, of the same results as the other pages."""
+"""Tables and figures of doc/questions.md."""
 import json
 
 import controls
@@ -9,7 +9,7 @@ from timings import RESULTS, ms
 
 
 def figures():
-    """Poses by night by the chain and SIFT; milliseconds of large images; which run measured maps."""
+    """Scores of poses by night, milliseconds of large images, and the run that measured maps."""
     found = summaries.read(RESULTS / 'neighbours.csv')
     night = {(row['detector'], row['descriptor']): row for row in found if (row['place'], row['points']) == ('light: night', '1000')}
     ours, theirs = night[controls.CHAIN], night[controls.OTHER]
@@ -20,7 +20,7 @@ def figures():
 
 
 def limits():
-    """How far the camera may zoom, rotate and tilt: half of the right matches without it are the limit."""
+    """The zoom, rotation and tilt at which half of the right matches are left."""
     found = summaries.by(summaries.read(RESULTS / 'views.csv'), 'kind', 'amount', 'method', place='photographs')
     same = {method: float(found['zoom', '1', method]['right']) for method in ('upright chain', 'matchViews', 'SIFT', 'ORB')}
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 
-"""The page of an evaluation's results, of summaries.py's files and of what is told of descriptors."""
+"""The page of an evaluation's results, of summaries.py's files and descriptors.py."""
 import descriptors
 from summaries import by, group, read
 from tables import HERE
@@ -14,7 +14,7 @@ def number(row, column):
 
 
 def describing_times():
-    """Milliseconds for 1000 points, by the names of the evaluation's configurations; of scripts/bench.sh."""
+    """Milliseconds for 1000 points by scripts/bench.sh, by the evaluation's names of configurations."""
     return {name.replace("default", "IIB").replace("PRESET_", "IIB "): ms(test, name, 1000).iloc[0] for test in DESCRIBED for name in methods(test)}
 
 
@@ -36,10 +36,9 @@ def overview(tables):
 
 
 def detected_lines(tables):
-    """What describes the points of each detector, in photographs and in rendered scenes."""
+    """Descriptors at the points of each detector, in photographs and in rendered scenes."""
     rendered = by(tables["detected_points"], "detector", "descriptor", place="rendered")
-    lines = [(row, rendered.get((row["detector"], row["descriptor"])))
-             for row in tables["detected_points"] if row["place"] == "light"]
+    lines = [(row, rendered.get((row["detector"], row["descriptor"]))) for row in tables["detected_points"] if row["place"] == "light"]
     return sorted(lines, key=lambda line: (line[0]["detector"], -number(line[0], "correct")))
 
 
@@ -76,7 +75,7 @@ def estimates(tables):
 
 
 def slider(tables):
-    """The pairs of images that the slider shows, each with the matches of all methods, as the page's script takes them."""
+    """The pairs of images of the slider with the matches of all methods, in the form of the page's script."""
     scenes, known, methods_known = [], list(descriptors.SCENES), list(descriptors.METHODS)
     pairs = group(tables["comparison"], "reference", "target").items()
     for (reference, target), members in sorted(pairs, key=lambda pair: known.index(pair[0][1]) if pair[0][1] in known else 0):
@@ -86,8 +85,7 @@ def slider(tables):
             values = [float(v) for v in row["matches"].split()]
             methods.append({"name": descriptors.METHODS[row["detector"], row["descriptor"]], "right": int(row["right"]),
                             "wrong": int(row["wrong"]), "matches": [values[i:i + 5] for i in range(0, len(values), 5)]})
-        scenes.append({"title": title, "about": about, "methods": methods,
-                       "pictures": ["pictures/%s.jpg" % name for name in (reference, target)]})
+        scenes.append({"title": title, "about": about, "methods": methods, "pictures": ["pictures/%s.jpg" % name for name in (reference, target)]})
     return scenes
 
 
@@ -102,7 +100,7 @@ def curves(tables):
 
 
 def context(folder):
-    """What the template takes, of a folder of summaries; nothing without those of given points."""
+    """The template's variables, from a folder of summaries; empty without fixed_points.csv."""
     tables = {name: read(folder / (name + ".csv")) for name in FILES}
     settings = folder / "settings.txt"
     return tables["fixed_points"] and {

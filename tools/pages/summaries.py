@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Summaries of an evaluation, from which tables and pages are made: summaries.py PAIRS OUT [COMMIT MACHINE]
+"""Summarizes an evaluation for tables and pages: summaries.py PAIRS OUT [COMMIT MACHINE]
 
 PAIRS: the folder of iib_evaluation's results, with a row for each pair of images. OUT gets means over the pairs of a group, one
 row each, with their number and the ends of the 95 % confidence interval of what is named last (low, high; bootstrap over scenes).
@@ -21,7 +21,6 @@ UNSEEN_SCENES = {'street', 'facade'}  # rendered scenes without them
 # Pairs in other light that rules for matches and poses were chosen on: sets, and seeds of places (tools/synthetic/views.py).
 CHOSEN_ON = {'walk_facade', 'strecha relit'}
 CHOSEN_SEEDS = {'1', '21', '22', '23', '31', '32'}
-REFERENCE = 'Hessian', 'IIB UNIVERSAL', 'propagated', 'findRelativePose'  # what other ways to a pose are compared with
 # Scenes that the constants of matchViews were chosen on, and one of the same place.
 CHOSEN_VIEWS = {'Herz-Jesus-P8', 'entry-P10', 'chamonix', 'courbevoie', 'boat', 'bikes', 'cam01', 'cam04', 'scene'}
 SAME_PLACE = {'iib_demo/scene', 'tilde_webcam/courbevoie'}
@@ -44,19 +43,18 @@ def places(row):
         return [] if name in TRAINED_ON_RENDERED else ['rendered']
     if row['kind'] != 'light':
         return [row['kind'], row['sequence']]
-    return [] if row['set'] in TRAINED_ON and is_learned(name) else [
-        'natural'] * (not is_learned(name)) + ['light'] * (row['set'] not in TRAINED_ON)
+    return [] if row['set'] in TRAINED_ON and is_learned(name) else ['natural'] * (not is_learned(name)) + ['light'] * (row['set'] not in TRAINED_ON)
 
 
 def curve_places(row):
-    """The same for curves, which lie in one picture: all of scenes that nobody was trained on."""
+    """Groups of curves, which share one picture: scenes that nothing was trained on."""
     if row['set'] in RENDERED:
         return ['rendered'] * (row['sequence'] in UNSEEN_SCENES)
     return ['light'] * (row['kind'] == 'light' and row['set'] not in TRAINED_ON)
 
 
 def light_place(row):
-    """Poses of views in one light, or in two, or of a list, that nothing was chosen on."""
+    """The group of a pose: views in one light, in two, or of a list; none where something was chosen on them."""
     if row['set'] == 'strecha':
         return ['same light']
     if row['set'].startswith('list '):  # of pairs, by others
@@ -67,17 +65,17 @@ def light_place(row):
 
 
 def scene(row):
-    """What intervals draw: a sequence, or a place."""
+    """The unit that the bootstrap draws: a sequence, or a place."""
     return row['set'], '' if row.get('sequence') in VISITS else row.get('sequence')
 
 
 def pose_area(limit):
-    """1 for no error of a relative pose, 0 from the limit on, in degrees: its mean is the area under the curve."""
+    """1 without an error of the pose, falling to 0 at the limit in degrees; the mean is the area under the curve."""
     return lambda row: max(0, 1 - float(row['error']) / limit)
 
 
 def alignment_place(row):
-    """The set of a pair, what was made of it, or `other scenes`; the demo's photographs are of the webcam Courbevoie."""
+    """The group of an alignment; the demo's photographs show the same place as the webcam Courbevoie."""
     if row['image'].startswith('moved by a '):
         least, model = (MODELS.index(name) for name in (row['image'].rsplit(' ', 1)[1], row['model']))
         return ['models too simple' if model < least else row['set'] if least == MODELS.index('HOMOGRAPHY') else 'models of more freedom'
@@ -90,7 +88,7 @@ def alignment_place(row):
 
 
 def view_place(row):
-    """Photographs seen from elsewhere: those of scenes that nothing was chosen on, or the others; and pairs of different sets."""
+    """The group of a warped view: photographs, scenes that constants were chosen on, or pairs of different sets."""
     if row['kind'] == 'unrelated':
         one, other = row['sequence'].split(' and ')
         return ['unrelated'] * ({row['set'] + '/' + one.rsplit('/', 1)[0], other.rsplit('/', 1)[0]} != SAME_PLACE)
@@ -105,7 +103,7 @@ def column(name):
 
 
 def within(pixels):
-    """Whether the corners are that near to their places on average."""
+    """Whether the mean error of the corners is within the limit."""
     return lambda row: float(row['error'] or 'inf') <= pixels
 
 
@@ -114,13 +112,13 @@ def mean(values):
 
 
 def shown(values):
-    """The mean of those that there are."""
+    """The mean of the values that are not None, as text."""
     known = [value for value in values if value is not None]
     return '%.5g' % mean(known) if known else ''
 
 
 def interval(scenes, statistic=mean):
-    """Ends of the 95 % confidence interval of the mean, or of another statistic, of all values: `scenes` has a list a scene."""
+    """Ends of the 95 % confidence interval of a statistic of all values, by bootstrap. `scenes`: a list of values per scene."""
     chance, scenes = random.Random(1), list(scenes)
     drawn = sorted(statistic([v for scene in chance.choices(scenes, k=len(scenes)) for v in scene]) for _ in range(DRAWS))
     return [drawn[at] for at in (DRAWS // 40, DRAWS - 1 - DRAWS // 40)]
@@ -145,7 +143,7 @@ PLANS = {
                           {'milliseconds': column('milliseconds'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
 }
 
-KEPT = {'poses_by_time.csv'}  # whose ways to a pose may be measured in runs of their own: the others' means and commits stay
+KEPT = {'poses_by_time.csv'}  # methods may be measured in separate runs: the means and commits of others stay
 
 
 def read(file):
@@ -165,15 +163,20 @@ def group(rows, *names):
 
 
 def table(head, lines):
-    """As Markdown has one."""
+    """A table in Markdown."""
     text = ['| ' + ' | '.join(head) + ' |', '|---' * len(head) + '|']
     return '\n'.join(text + ['| ' + ' | '.join(line) + ' |' for line in lines])
 
 
 def by(rows, *names, **where):
-    """The one row of each value of the columns, or of each combination of theirs, among those with the values of `where`."""
+    """The first row for each value, or combination of values, of the columns, among rows with the values of `where`."""
     chosen = [row for row in rows if all(row[name] == value for name, value in where.items())]
     return {key if len(names) > 1 else key[0]: members[0] for key, members in group(chosen, *names).items()}
+
+
+def score(row):
+    """The area up to 5 degrees with its interval."""
+    return '%.2f (%.2f to %.2f)' % tuple(float(row[name]) for name in ('at_5', 'low', 'high'))
 
 
 def write(file, heads, rows):
@@ -182,12 +185,11 @@ def write(file, heads, rows):
 
 
 def summarize(source, target, groups_of, keys, values, *commit):
-    """Means of each group; with the commit of which they are, that too."""
+    """Writes means of each group, and the commit if it is given."""
     groups = collections.defaultdict(lambda: collections.defaultdict(list))
     for row in read(source):
         for place in groups_of(row):
-            groups[(place, *(row[key] for key in keys))][scene(row)].append(
-                [value(row) for value in values.values()])
+            groups[(place, *(row[key] for key in keys))][scene(row)].append([value(row) for value in values.values()])
     lines = {tuple(row.values())[:1 + len(keys)]: list(row.values()) for row in (read(target) if target.name in KEPT else [])}
     for key, scenes in groups.items():
         every = [pair for scene in scenes.values() for pair in scene]
@@ -204,7 +206,7 @@ def misled(row):
 
 
 def summarize_views(source, target):
-    """Matches of each method by how the view was changed; also of those photographs alone that the slow method matched."""
+    """Matches of each method by the change of the view; also for the photographs that the slow method matched."""
     slow = {(row['set'], row['sequence']) for row in read(source) if row['method'] == 'AffineFeature'}
 
     def places(row):
@@ -214,13 +216,13 @@ def summarize_views(source, target):
 
 
 def gain(pairs):
-    """How many times as many right matches the second of each pair of counts is, of all."""
+    """The sum of the second counts over the sum of the first."""
     return sum(ours for _, ours in pairs) / max(1, sum(own for own, _ in pairs))
 
 
 def summarize_gains(source, target):
-    """Right matches of the default descriptor over those of a detector's own, at its points, of pairs in changed light: all, and those of sets that
-    nothing was trained on."""
+    """Right matches of the default descriptor over those of a detector's own descriptor, at its points, for all pairs in changed light and for
+    sets that nothing was trained on."""
     counts = collections.defaultdict(dict)
     for row in read(source):
         for place in {'natural', 'light'}.intersection(places(row)):
@@ -233,24 +235,6 @@ def summarize_gains(source, target):
         pairs = [pair for scene in scenes.values() for pair in scene]
         lines.append([place, detector, len(pairs), len(scenes)] + ['%.4f' % v for v in (gain(pairs), *interval(scenes.values(), gain))])
     write(target, ['place', 'detector', 'pairs', 'scenes', 'gain', 'low', 'high'], lines)
-
-
-def summarize_differences(source, target):
-    """How much less than the reference each way to a pose has of the area up to 5 degrees, on the same pairs, with the interval of that."""
-    areas = collections.defaultdict(dict)
-    for row in read(source):
-        for place in light_place(row):
-            areas[(place, *(row[key] for key in ('detector', 'descriptor', 'points', 'estimator')))][
-                scene(row), row['sequence'], row['target']] = pose_area(5)(row)
-    lines = []
-    for key, each in sorted(areas.items()):
-        scenes = collections.defaultdict(list)
-        for pair in sorted(each.keys() & areas[(key[0], *REFERENCE)].keys()):
-            scenes[pair[0]].append(areas[(key[0], *REFERENCE)][pair] - each[pair])
-        every = [value for scene in scenes.values() for value in scene]
-        if every:
-            lines.append([*key, len(every), *('%.4g' % value for value in (mean(every), *interval(scenes.values())))])
-    write(target, ['place', 'detector', 'descriptor', 'points', 'estimator', 'pairs', 'less', 'low', 'high'], lines)
 
 
 def summarize_curves(source, target):
@@ -275,7 +259,7 @@ DRAWN = 10  # one in so many matches is drawn
 
 
 def summarize_comparison(source, target):
-    """How many matches of each method are right, and every tenth: x, y, x and y of the other image, whether it is right."""
+    """Counts of right and wrong matches of each method, and every tenth match: x, y, x and y of the other image, whether it is right."""
     heads, lines = ('reference', 'target', 'detector', 'descriptor'), []
     for key, rows in sorted(group(read(source), *heads).items()):
         right = sum(row['correct'] == '1' for row in rows)
@@ -285,8 +269,7 @@ def summarize_comparison(source, target):
 
 
 def summarize_learned(source, target):
-    """Puts what IIB finds at the points of learned detectors, and what their own descriptors find where files hold some, into
-    the list of what these are known to find."""
+    """Updates learned.csv: matches of IIB at the points of learned detectors, and of their own descriptors where files have them."""
     found, lines = collections.defaultdict(list), read(target)
     if not lines:
         return
@@ -311,13 +294,13 @@ PLACES = {'night': 'rendered places, by night', 'dusk': 'rendered places, at dus
 
 
 def data_of(name, light):
-    """The kind of data that a set is of."""
+    """The kind of data of a set."""
     return DATA.get(name) or PLACES.get(light, 'other data')
 
 
 def summarize_uncertainty(source, target):
-    """For each quantity and kind of data: pairs or images, those with an answer, errors, the share of errors within the limit of each level, the
-    geometric mean of the reported standard deviations, and the mean logarithmic score."""
+    """For each quantity and kind of data: number of pairs or images, those with a result, errors, the share of errors within the limit of each
+    level, the geometric mean of the reported standard deviations, and the mean logarithmic score."""
     found = {}
     for row in read(source) + read(source.with_name('localization_uncertainty.csv')):
         count = int(row['count'])
@@ -332,7 +315,7 @@ def summarize_uncertainty(source, target):
     write(target, ['quantity', 'data', 'pairs', 'found', 'errors', *LEVELS, 'deviation', 'score'], lines)
 
 
-OTHERS = {'differences.csv': ('estimators.csv', summarize_differences), 'gains.csv': ('detected_points.csv', summarize_gains), 'curves.csv': ('detected_points.csv', summarize_curves),
+OTHERS = {'gains.csv': ('detected_points.csv', summarize_gains), 'curves.csv': ('detected_points.csv', summarize_curves),
           'learned.csv': ('detected_points.csv', summarize_learned), 'comparison.csv': ('comparison.csv', summarize_comparison),
           'uncertainty.csv': ('uncertainty.csv', summarize_uncertainty), 'views.csv': ('views.csv', summarize_views)}
 
@@ -342,7 +325,7 @@ def today():
 
 
 def remember(file, found):
-    """Of which runs files are, as names and (commit, date, machine), beside what the list tells of others."""
+    """Adds the runs (commit, date, machine) of files, by name, to the list of runs."""
     runs = {row['file']: list(row.values())[1:] for row in read(file)}
     runs.update(found)
     write(file, ['file', 'commit', 'date', 'machine'], ([name, *runs[name]] for name in sorted(runs)))

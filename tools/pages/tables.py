@@ -13,7 +13,7 @@ import re
 import controls
 import questions
 import summaries
-from summaries import table
+from summaries import score, table
 from timings import RESULTS, chains, describing, matching, rows, same_points, speed_figures, step_by_step
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -49,8 +49,7 @@ def learned_points():
 
 @functools.lru_cache(None)
 def poses_by_time():
-    """Of each detector, number of points and way of matching: of its matches as they are, by the better of PoseLib's thresholds, and refined
-    here, milliseconds a pair and the areas up to 5 and 10 degrees."""
+    """Rows by detector, number of points and kind of matches: `plain` by the better of PoseLib's thresholds, and `refined` here."""
     found = {}
     for row in rows('poses_by_time.csv'):
         ways, way = found.setdefault((row['detector'], int(row['points']), row['matches']), {}), 'plain' if 'PoseLib' in row['estimator'] else 'refined'
@@ -65,13 +64,12 @@ def poses_and_time():
     for (detector, points, matches), ways in reversed(poses_by_time().items()):
         lines.append([detector, str(points), matches])
         for row in (ways['plain'], ways['refined']):
-            lines[-1] += ['%.2f (%.2f to %.2f)' % tuple(float(row[name]) for name in ('at_5', 'low', 'high')), '%.2f' % float(row['at_10']),
-                          '%.0f' % float(row['milliseconds'])]
+            lines[-1] += [score(row), '%.2f' % float(row['at_10']), '%.0f' % float(row['milliseconds'])]
     return table(['points of', 'points', 'matches', 'as they are, PoseLib', 'up to 10°', 'ms a pair', 'refined here', 'up to 10°', 'ms a pair'], lines)
 
 
 def other_run(*rows):
-    """What is to be said of times that are compared, where they are of different runs."""
+    """A note if rows are from different runs."""
     return ', timed in different runs' if len({row['commit'] for row in rows}) > 1 else ''
 
 
@@ -88,7 +86,7 @@ def learned_figures():
 
 
 def paper(question):
-    """One of the paper's tables: our figures beside its own. Where bits were learned, on scenes that they were not learned on."""
+    """One of the paper's tables: our figures beside its own. Learned bits are judged on scenes that they were not learned on."""
     natural, light, rendered = (summaries.by(rows('fixed_points.csv'), 'configuration', place=place) for place in ('natural', 'light', 'rendered'))
     photographs, lines = light if 'learning' in question else {**light, **natural}, []
     for row in (row for row in PAPER if row['question'] == question):
@@ -112,15 +110,14 @@ def matching_modes():
     return table(['matcher', 'photographs', 'cost', 'time', 'rendered', 'cost', 'time'], lines)
 
 
+def quoted_systems():
+    """The head and the lines of the paper's table of localization systems."""
+    return [['system', 'inputs', 'lateral', 'longitudinal', 'altitude'], *([value or '–' for value in row.values()] for row in LOCALIZATION)]
+
+
 def localization_systems():
-    """The paper's table of localization systems, as it quotes them."""
     head, *lines = quoted_systems()
     return table(head, lines)
-
-
-def quoted_systems():
-    """The head and the lines of that table."""
-    return [['system', 'inputs', 'lateral', 'longitudinal', 'altitude'], *([value or '–' for value in row.values()] for row in LOCALIZATION)]
 
 
 SETUPS = {'': 'recommended chain', '--lines': 'recommended chain, lines', '--orb-and-akaze': 'ORB and AKAZE',
@@ -128,7 +125,7 @@ SETUPS = {'': 'recommended chain', '--lines': 'recommended chain, lines', '--orb
 
 
 def setups(key, file=ROOT / 'doc/localization/localization_setups.csv'):
-    """Rows of setups.py's file by `key`: images, those found and those within 5 cm and 0.5 degrees, and means of the errors of those found."""
+    """Rows of setups.py's file by `key`: number of images, of poses, share within 5 cm and 0.5 degrees, and mean errors of the poses."""
     for names, found in summaries.group(summaries.read(file), *key).items():
         images, located, near = (sum(int(row[column]) for row in found) for column in ('images', 'found', 'within_5'))
         means = (sum(float(row[column]) * int(row['found']) for row in found) / located if located else None
@@ -146,12 +143,12 @@ def localization_setups():
     return table(['map', 'set-up'] + SETUP_HEAD, setups(('map', 'setup')))
 
 
-SEEN = 'Herz-Jesus-P8', 'entry-P10', 'castle-P30'  # with which rules of matching were settled
+SEEN = 'Herz-Jesus-P8', 'entry-P10', 'castle-P30'  # scenes that rules of matching were chosen on
 
 
 def located_photographs():
-    """How many images of Strecha's scenes are near their places, by method: those as they are and those relit, within 5 cm and within 25; then the
-    same within 5 cm of each scene that nothing was chosen on."""
+    """Images of Strecha's scenes near their places, by method, as they are and relit: within 5 cm, within 25 cm, and within 5 cm for each scene
+    that nothing was chosen on."""
     found = [row for row in json.loads((ROOT / 'doc/localization/results.json').read_text())['rows'] if row['light'] in ('as they are', 'relit')]
     unseen = [place for place in dict.fromkeys(row['place'] for row in found) if place not in SEEN]
 
@@ -165,14 +162,13 @@ def located_photographs():
 
 
 def localization_photographs():
-    """The same as a table."""
     unseen, lines = located_photographs()
     heads = ['within 5 cm and 0.5°', 'within 25 cm', *('%s, 5 cm' % place for place in unseen)]
     return table(['', *(head + light for head in heads for light in ('', ', relit'))], lines)
 
 
 def localization_lights(file):
-    """The same by light, for the page of localization, in fewer columns: the head and the lines."""
+    """Head and lines of set-ups by light, in fewer columns, for the page of localization."""
     return [['map', 'set-up', 'light', 'poses', '5 cm, 0.5°', *SETUP_HEAD[3:]], *(
         [*line[:3], '%s of %s' % (line[4], line[3]), *line[5:]] for line in setups(('map', 'setup', 'light'), file))]
 
@@ -190,8 +186,7 @@ GROUPS = {'natural': '%s pairs of photographs', 'light': '%s of them, of other s
 
 
 def paper_orders():
-    """Whether the orders that the paper's tables show hold for our figures, in each group of pairs: all steps, or which ones; by less than a
-    hundredth nothing is in order."""
+    """Whether the orders of the paper's tables hold for our figures, in each group of pairs. Differences below .01 count as level."""
     found = {place: summaries.by(rows('fixed_points.csv'), 'configuration', place=place) for place in GROUPS}
 
     def line(statement, column, groups, margin=0):
@@ -212,8 +207,7 @@ def paper_orders():
 
 
 def estimates():
-    """Of each method, place, kind of points and estimator, the areas under the curve of the pose's error; each estimator with that of its
-    thresholds which is best up to 5 degrees."""
+    """Rows by method, place, kind of points and estimator, each estimator with its best threshold up to 5 degrees."""
     found = {}
     for row in rows('estimators.csv'):
         key = (row['detector'], row['descriptor']), row['place'], row['points'], row['estimator'].split()[0]
@@ -223,18 +217,12 @@ def estimates():
 
 
 CHAIN = 'Hessian', 'IIB UNIVERSAL'
-WAYS = ('plain', 'MAGSAC'), ('plain', 'PoseLib'), ('propagated', 'findRelativePose')  # OpenCV's, the best of others, and this project's
-
-
-def score(row):
-    """The area up to 5 degrees with its interval."""
-    return '%.2f (%.2f to %.2f)' % tuple(float(row[name]) for name in ('at_5', 'low', 'high'))
 
 
 def pose_methods():
-    """All methods that were measured, by what this project does and by what others do."""
+    """All methods with plain, refined and propagated matches, by three estimators."""
     found, lines = estimates(), []
-    methods = sorted({key[0] for key in found}, key=lambda method: -float(found[(method, 'other light') + WAYS[-1]]['at_5']))
+    methods = sorted({key[0] for key in found}, key=lambda method: -float(found[method, 'other light', 'propagated', 'findRelativePose']['at_5']))
     ways = list(itertools.product(('propagated', 'refined', 'plain'), ('findRelativePose', 'PoseLib', 'MAGSAC')))
     for place, method in itertools.product(('other light', 'same light'), methods):
         rows_of = [found[(method, place, *way)] for way in ways]
@@ -243,8 +231,8 @@ def pose_methods():
 
 
 def own_descriptors():
-    """Right matches at the points of a detector by its own descriptor, the best of two others and the default, and how many times as many, also
-    on pairs of sets that nothing was trained on."""
+    """Right matches at a detector's points by its own descriptor, the best of two others, and the default; and the ratio, also for sets that
+    nothing was trained on."""
     found, lines = summaries.by(rows('detected_points.csv'), 'place', 'detector', 'descriptor'), []
 
     def correct(detector, descriptor):
@@ -260,8 +248,8 @@ def own_descriptors():
 
 
 def drop_in():
-    """Right matches by a detector's own descriptor and by the default, all photographs; and by two descriptors of one size, photographs that nothing
-    was trained on."""
+    """Right matches by a detector's own descriptor and by the default, for all photographs; and by two descriptors of one size, for photographs
+    that nothing was trained on."""
     found = summaries.by(rows('detected_points.csv'), 'place', 'detector', 'descriptor')
     lines = []
     for place, detector, ours in (*(('natural', name, 'IIB') for name in ('ORB', 'AKAZE', 'BRISK', 'KAZE', 'SIFT')), ('light', 'ORB', 'IIB SMALL')):
@@ -290,30 +278,20 @@ def rotation_figures():
     """Recall of upright and oriented codes of rotated images."""
     turned = summaries.by(rows('robustness.csv'), 'configuration', 'target', kind='turn')
     return {'%s_%s' % (name, angle): '%.2f' % float(turned[configuration, angle]['recall']) for name, configuration, angle in (
-        ('upright', 'IIB', '15'), ('upright', 'IIB', '30'), ('oriented', 'IIB oriented', '15'), ('orb', 'ORB oriented', '15'))}
-
-
-POSE_KEYS = 'place', 'detector', 'descriptor', 'points', 'estimator'
-
-
-def compared(row, sign=1):
-    """How much less than the chain's a way to a pose has, or with -1 how much more, on the same pairs; with its interval."""
-    less = summaries.by(rows('differences.csv'), *POSE_KEYS)[tuple(row[key] for key in POSE_KEYS)]
-    return '%.3f (%.3f to %.3f)' % tuple(round(sign * float(less[key]), 3) + 0. for key in ('less', *('low', 'high')[::sign]))
+        ('upright', 'IIB', '15'), ('orb', 'ORB oriented', '15'))}
 
 
 def pose_figures():
-    """Scores of other estimators' run: of the chain in other light and in one, and of others in one light."""
+    """Scores of the chain in other light, and of SIFT and the best method in the same light; number of pairs in other light."""
     every = estimates()
-    ours, theirs, refined = (every[CHAIN, 'other light', *way] for way in (WAYS[-1], ('propagated', 'PoseLib'), ('refined', WAYS[-1][1])))
-    same = every[CHAIN, 'same light', *WAYS[-1]]
-    scores = {'chain': ours, 'refined': refined, 'chain_same': same, 'sift_same': every[('SIFT', 'SIFT'), 'same light', *WAYS[1]],
+    ours = every[CHAIN, 'other light', 'propagated', 'findRelativePose']
+    scores = {'chain': ours, 'refined': every[CHAIN, 'other light', 'refined', 'findRelativePose'], 'sift_same': every[('SIFT', 'SIFT'), 'same light', 'plain', 'PoseLib'],
               'best_same': max((row for key, row in every.items() if key[1] == 'same light'), key=lambda row: float(row['at_5']))}
-    return {**{name: '%.2f' % float(row['at_5']) for name, row in scores.items()}, 'poselib_more': compared(theirs, -1), 'pairs': ours['pairs']}
+    return {**{name: '%.2f' % float(row['at_5']) for name, row in scores.items()}, 'pairs': ours['pairs']}
 
 
 def photograph_figures():
-    """A statue by many cameras, places found in maps, and points that are kept in other light."""
+    """Reconstruction of a statue by many cameras, places found in maps, and points kept in other light."""
     found = rows('photographs.csv')
     statue = {row['method']: row for row in found if row['scene'] == 'liberty' and row['registered']}
     run, = (row for row in rows('runs.csv') if row['file'] == 'photographs.csv, liberty')
@@ -325,7 +303,7 @@ def photograph_figures():
     close, shared = next(row['close'] for row in found if row['method'] == 'chain and SIFT').split(' of ')
     figures = {'images': statue['chain']['registered'].split()[-1], 'date': run['date'], 'disagree': '%d of %s' % (int(shared) - int(close), shared)}
     for name, method in (('chain', 'recommended chain'), ('sift', 'SIFT, normalized image')):
-        figures.update(zip((name + '_located', name + '_relit', name + '_near', name + '_near_relit'), near[method]))  # within 5 cm, and within 25
+        figures.update(zip((name + '_located', name + '_relit', name + '_near', name + '_near_relit'), near[method]))  # within 5 cm and 25 cm
     points = {(row['scene'], row['method']): int(row['points']) for row in found if row['points']}
     for method in ('chain', 'SIFT', 'normalized'):
         kept = [round(100 * count / points[scene[:-len(' relit')], name]) for (scene, name), count in points.items() if name == method and scene.endswith(' relit')]
@@ -337,12 +315,12 @@ def photograph_figures():
 
 
 def view_rows(place):
-    """Means over photographs seen from elsewhere, by kind of change, amount and method."""
+    """Means over warped photographs, by kind of change, amount and method."""
     return summaries.by(rows('views.csv'), 'kind', 'amount', 'method', place=place)
 
 
 def by_change(place, methods):
-    """Right matches of all, and processor time, of methods by change."""
+    """Right and all matches and processor time of methods, by change."""
     found, lines = view_rows(place), []
     order = ('zoom', 'rotation', 'tilt', 'zoom and rotation', 'tilt and rotation')
     for kind, amount in sorted({key[:2] for key in found if key[2] == methods[-1]}, key=lambda key: (order.index(key[0]), float(key[1].split()[0]))):
@@ -351,16 +329,8 @@ def by_change(place, methods):
     return table(['', *itertools.chain(*((method, 'ms') for method in methods))], lines)
 
 
-def views():
-    return by_change('photographs', ('matchViews', 'upright chain', 'ORB', 'SIFT'))
-
-
-def views_affine():
-    return by_change('some photographs', ('matchViews', 'AffineFeature'))
-
-
 def view_figures():
-    """Right matches and milliseconds in views of photographs; of unrelated images; of which run."""
+    """Right matches and milliseconds on warped photographs and on unrelated images, and the run."""
     found, some, apart = view_rows('photographs'), view_rows('some photographs'), view_rows('unrelated')
     run, = (row for row in rows('runs.csv') if row['file'] == 'views.csv')
     changed = [row for place in ('photographs', 'chosen on') for key, row in view_rows(place).items() if key[2] == 'matchViews']
@@ -401,15 +371,14 @@ def presets():
 
 
 def inside(level, quantity):
-    """Of quantities whose names have a part, the least and the most of a hundred errors that are inside what is told for a level, by kind of data."""
+    """Per cent of errors within the limit of a level: least and most of all kinds of data, for quantities with that name."""
     shares = [100 * float(row[level]) for row in rows('uncertainty.csv') if quantity in row['quantity'] and row[level]]
     return '%.0f to %.0f' % (min(shares), max(shares))
 
 
 def sure_figures():
-    """The least and the most of a hundred errors, by kind of data, that are inside what is estimated for a level."""
-    return {'%s_%s' % (name, level[2:]): inside(level, what) for name, what in (
-        ('pose', 'findRelativePose'), ('localizer', 'Localizer'), ('point', 'refineMatches'), ('corner', 'alignImages')) for level in ('0.5', '0.95', '0.99')}
+    """Per cent of errors within the limits of three levels."""
+    return {'%s_%s' % (name, level[2:]): inside(level, what) for name, what in (('pose', 'findRelativePose'), ('localizer', 'Localizer')) for level in ('0.5', '0.95', '0.99')}
 
 
 def uncertainty():
@@ -422,15 +391,11 @@ def uncertainty():
 
 
 def photographs(known=True):
-    """Reconstructions of scenes with known poses, and what they keep in other light; or of one without."""
+    """Reconstructions of scenes with known poses and their points in other light; or of a scene without known poses."""
     found = [row for row in rows('photographs.csv') if (row['scene'] != 'liberty') == known]
     columns = [name for name in found[0] if name != 'others' or not known]
     heads = {'others': 'images of other components', 'centres': 'centres, %', 'close': 'within 5 % and 5 degrees'}
     return table([heads.get(name, name) for name in columns], [[row[name] for name in columns] for row in found])
-
-
-def photographs_of_many():
-    return photographs(False)
 
 
 def night():
@@ -451,19 +416,20 @@ def first_patch():
 
 
 def run_figures():
-    """Which code made a file, and when, by the file's name."""
+    """Commit, date and machine of each file, by its name."""
     return {row['file'][:-len('.csv')]: '%s on %s (%s)' % (row['commit'].replace(';', ' and '), row['date'], row['machine'])
             for row in rows('runs.csv') if re.fullmatch(r'\w+\.csv', row['file'])}
 
 
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
-    drop_in, own_descriptors, equal_sizes, presets, views, views_affine, photographs, photographs_of_many, describing, chains, same_points, matching, step_by_step,
+    drop_in, own_descriptors, equal_sizes, presets, photographs, describing, chains, same_points, matching, step_by_step,
     matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time,
     detected_points, uncertainty, night, first_patch)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
-ALL.update({'pose_all': controls.table, 'pose_kinds': controls.kinds, 'pose_ratios': controls.by_ratio, 'pose_noise': controls.noise,
+ALL.update({'photographs_of_many': functools.partial(photographs, False), 'views_affine': functools.partial(by_change, 'some photographs', ('matchViews', 'AffineFeature')),
+            'views': functools.partial(by_change, 'photographs', ('matchViews', 'upright chain', 'ORB', 'SIFT')), 'pose_all': controls.table, 'pose_kinds': controls.kinds, 'pose_ratios': controls.by_ratio, 'pose_noise': controls.noise,
             'pose_neighbours': controls.neighbours, 'pose_cause': controls.cause, 'wrong_poses': controls.wrong, **questions.ALL})
 FIGURES = {'learned': learned_figures, 'controls': controls.figures, 'poses': pose_figures, 'photographs': photograph_figures, 'views': view_figures, 'sure': sure_figures,
            'speed': speed_figures, 'rotation': rotation_figures, 'questions': questions.figures, 'runs': run_figures}

@@ -1,5 +1,4 @@
-"""Tables and sentences of times, of what scripts/bench.sh measured, as tables.py has the others: timings.py FOLDER prints those of
-the folder's speed.csv.
+"""Tables and figures of times by scripts/bench.sh: timings.py FOLDER prints those of the folder's speed.csv.
 """
 import functools
 import itertools
@@ -19,7 +18,7 @@ def rows(name):
 
 @functools.lru_cache(None)
 def speed():
-    """What scripts/bench.sh measured: points and milliseconds by test and parameters, a column an instruction set, the widest first."""
+    """Points and milliseconds by test and parameters, one column per instruction set, the widest first."""
     found = pd.read_csv(RESULTS / 'speed.csv', comment='#', dtype={'parameters': str, 'points': str})
     return found.fillna({'parameters': '', 'points': ''}).set_index(['test', 'parameters'])
 
@@ -35,7 +34,7 @@ def ms(test, *parameters):
 
 
 def methods(test, position=0):
-    """The values of a parameter of a test; of one that was skipped none."""
+    """The values of a parameter of a test; none if it was skipped."""
     return dict.fromkeys(parameters.split('/')[position] for name, parameters in speed().index if name == test)
 
 
@@ -44,7 +43,7 @@ def shown(form, row):
 
 
 def machine():
-    """Where, when, with which OpenCV, and of which commit if that is known."""
+    """Machine, date, OpenCV, and the commit if it is known."""
     run = by(read(RESULTS / 'runs.csv'), 'file').get('speed.csv')
     return (RESULTS / 'speed.csv').read_text().partition('\n')[0][2:] + (', commit %s.' % run['commit'] if run else '.')
 
@@ -65,7 +64,7 @@ def describing():
 
 
 def beside(peer, tests, form):
-    """Rows of tests, labelled, over the one that is called `peer`."""
+    """Rows of labelled tests, relative to the test that is called `peer`."""
     first = ms(*dict(tests).get(peer, tests[0][1])) if tests else None
     lines = [[label, speed().loc[test[0], '/'.join(test[1:])]['points'], *shown(form, ms(*test)), *shown('%.2f', ms(*test) / first)]
              for label, test in tests if (test[0], '/'.join(test[1:])) in speed().index]
@@ -101,7 +100,7 @@ def matching():
 
 
 def steps():
-    """What speed is judged by, from an image to a pose: labels, how values are written, and the values."""
+    """Labels, formats and values of the steps from an image to a pose."""
     pictures = {'scene': "the authors' scene", 'street_noon': 'a rendered street'}
     for test, method, peer, what in (('IIB_Detect_vga', 'HessianDetector', 'ORB detects', 'find points, over ORB'),
                                      ('IIB_Chain_vga', 'recommended chain', 'ORB', 'find and describe, over ORB')):
@@ -139,17 +138,16 @@ def steps():
 
 
 def step_by_step():
-    """From an image to a pose, with each instruction set; steps that were not measured are left out."""
+    """Steps from an image to a pose, by instruction set, without those that were not measured."""
     return table(['', *sets()], [[label, *shown(form, row)] for label, form, row in steps() if not row.isna().all()])
 
 
 def speed_figures():
-    """With AVX2: describing over ORB, how many times as fast as BFMatcher matching is, milliseconds to find and describe; and the machine."""
+    """With AVX2: milliseconds to find and describe, the time to describe over ORB's, the speed of mutual matching over BFMatcher's."""
     figures = {name: '%.1f' % ms(test, 'street_noon', method, 1000)['AVX2'] for name, test, method in (
         ('chain_ms', 'IIB_Chain_vga', 'recommended chain'), ('orb_ms', 'IIB_Chain_vga', 'ORB'))}
-    return {**figures, 'sift_ms': '%.0f' % ms('IIB_Chain_others', 'street_noon', 'SIFT', 1000)['AVX2'], 'machine': machine(),
-            'described': '%.2f' % (ms('IIB_Describe_hd', 'default', 1000)['AVX2'] / ms('IIB_Describe_hd', 'ORB', 1000)['AVX2']),
-            'matched': '%.1f' % faster('EXACT', 'false', 1000)['AVX2'], 'mutual': '%.1f' % faster('EXACT', 'true', 1000)['AVX2']}
+    return {**figures, 'machine': machine(), 'mutual': '%.1f' % faster('EXACT', 'true', 1000)['AVX2'],
+            'described': '%.2f' % (ms('IIB_Describe_hd', 'default', 1000)['AVX2'] / ms('IIB_Describe_hd', 'ORB', 1000)['AVX2'])}
 
 
 if __name__ == '__main__':

@@ -3,8 +3,9 @@
 
 """Measures maps of many images, made by repetition: map.py PLACE... --out FILE [--images N...]
 
-PLACE: folders that tools/synthetic/views.py wrote. Their views at noon are repeated, each copy of a place a hundred metres from the last, until
-the map has N images; the views of other lights are then looked for in it. The copies look alike, so that what is found may be in any of them."""
+PLACE: folders of tools/synthetic/views.py. Their views at noon are repeated, each copy of a place a hundred metres from the last, until the map
+has N images. Then views under other lights are localized in it; since copies look alike, in any of them. Dependencies: those of
+tools/localization/measure.py."""
 import argparse
 import datetime
 import json
@@ -18,40 +19,33 @@ import time
 import cv2
 import numpy as np
 
+import opencv_iib
+from opencv_iib import _core, localization
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'localization'))
+import measure  # noqa: E402
+
 APART = 100.  # metres
 KEYPOINTS, QUERIES = 1000, 12
 
 
-def poses(folder):
-    """Names, and camera from world: quaternion w x y z and translation, of a folder in TUM's form."""
-    for line in (folder / 'poses.txt').read_text().splitlines():
-        if line and line[0] != '#':
-            name, *numbers = line.split()
-            yield name, np.array(numbers[:3], float), np.array(numbers[3:], float)
-
-
 def write_model(places, count, folder):
-    """A COLMAP model in text of so many images, without points, and links to the pictures."""
+    """A COLMAP model of so many images without points, and links to the pictures."""
     (folder / 'images').mkdir()
-    cameras, lines, links = {}, [], 0
+    (folder / 'model').mkdir()
+    images, copies = [], 0
     for copy in range(count):
         for place in places:
-            camera = (place / 'map/cameras.txt').read_text().splitlines()[-1].split()
-            cameras.setdefault(' '.join(camera[1:]), len(cameras) + 1)
-            for name, centre, (x, y, z, w) in poses(place / 'map'):
-                if len(lines) == 2 * count:
-                    break
-                rotation = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)], [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
-                t = -rotation.T @ (centre + [APART * links, 0, 0])
-                file = '%s_%d_%s.png' % (place.name, copy, name)
-                os.symlink((place / 'map/images' / (name + '.png')).resolve(), folder / 'images' / file)
-                lines += ['%d %.9f %.9f %.9f %.9f %.9f %.9f %.9f %d %s' % (len(lines) // 2 + 1, w, -x, -y, -z, *t, cameras[' '.join(camera[1:])], file), '']
-            links += 1
-    (folder / 'model').mkdir()
-    (folder / 'model/cameras.txt').write_text(''.join('%d %s\n' % (number, camera) for camera, number in cameras.items()))
-    (folder / 'model/images.txt').write_text('\n'.join(lines) + '\n')
-    (folder / 'model/points3D.txt').write_text('')
+            camera, poses = measure.read_place(place / 'map')
+            for name, pose in poses.items():
+                moved = pose.copy()
+                moved[:3, 3] -= APART * copies * pose[:3, 0]
+                if len(images) < count:
+                    file = '%s_%d_%s' % (place.name, copy, name)
+                    os.symlink((place / 'map/images' / name).resolve(), folder / 'images' / file)
+                    images.append(_core.PosedImage(file, camera, moved, np.empty((0, 2))))
+            copies += 1
+    _core.writeModel(folder / 'model', images)
 
 
 LOOKING = '''
@@ -77,9 +71,7 @@ print(json.dumps({'open_seconds': opened, 'resident_mb': resident() - before, 'f
 '''
 
 
-def measure(places, count, queries):
-    import opencv_iib
-    from opencv_iib import localization
+def measured(places, count, queries):
     opencv_iib.setNumThreads(1)
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -108,7 +100,7 @@ def main():
     result = {'date': str(datetime.date.today()), 'machine': processor.strip(), 'keypoints': KEYPOINTS,
               'size': list(reversed(cv2.imread(queries[0].partition('|')[0], cv2.IMREAD_GRAYSCALE).shape)), 'rows': []}
     for count in options.images:
-        result['rows'].append(measure(options.places, count, queries))
+        result['rows'].append(measured(options.places, count, queries))
         print(result['rows'][-1], flush=True)
         options.out.write_text(json.dumps(result, indent=1) + '\n')
 

@@ -5,9 +5,7 @@
 #include "lights.inc"
 #include "materials.inc"
 
-#declare Half = 7.5;
-#declare Deep = 30;
-#declare High = 6.5;
+#declare Half = 7.5; #declare Deep = 30; #declare High = 6.5;
 #declare HallSeed = seed(71 + 100 * Seed);
 #macro Any(From, To) (From + (To - From) * rand(HallSeed)) #end
 #macro AnyTint(From, To) <Any(From, To), Any(From, To), Any(From, To)> #end
@@ -80,9 +78,7 @@
             translate 4 * J * z Surface(OBJECT, PaintTexture(<0.25, 0.3, 0.3>, J))
         }
     #end
-    #for (J, 0, 5)
-        Machine(Any(-5.2, -3.2), 4.5 + 4 * J, Any(-75, -40)) Machine(Any(3.2, 5.2), 5.5 + 4 * J, Any(40, 75))
-    #end
+    #for (J, 0, 5) Machine(Any(-5.2, -3.2), 4.5 + 4 * J, Any(-75, -40)) Machine(Any(3.2, 5.2), 5.5 + 4 * J, Any(40, 75)) #end
     #for (J, 0, 5)
         cylinder { <Any(-6.8, -6.2), Any(1.8, 5.4), -4>, <Any(-6.8, -6.2), Any(1.8, 5.4), Deep>, Any(0.05, 0.14) Surface(OBJECT, PaintTexture(AnyTint(0.2, 0.7), J)) }
         cylinder { <Any(6.2, 6.8), Any(1.8, 5.4), -4>, <Any(6.2, 6.8), Any(1.8, 5.4), Deep>, Any(0.05, 0.14) Surface(OBJECT, PaintTexture(AnyTint(0.2, 0.7), J)) }

@@ -120,8 +120,7 @@ def still(folder, scene, size):
         (folder / f"H_1_{k}").write_text("1 0 0\n0 1 0\n0 0 1\n")
     write_camera(folder / "camera.yml", scene, [pose] * len(lights), size)
     for mode, name in ((DEPTH, "depth"), (LABELS, "labels")):
-        yield Task(folder / name / "1.png", scene, mode, "noon", pose, 0,
-                   [folder / name / f"{k}.png" for k in numbers[1:]])
+        yield Task(folder / name / "1.png", scene, mode, "noon", pose, 0, [folder / name / f"{k}.png" for k in numbers[1:]])
     for k, light in zip(numbers, lights):
         yield Task(folder / f"{k}.png", scene, IMAGE, light, pose, 0, [])
 
@@ -134,8 +133,7 @@ def walked(folders, scene, size, frames):
         write_camera(folder / "camera.yml", scene, poses, size)
     for k, pose in enumerate(poses, 1):
         for mode, name in ((DEPTH, "depth"), (LABELS, "labels")):
-            yield Task(first / name / f"{k}.png", scene, mode, "noon", pose, k,
-                       [folder / name / f"{k}.png" for folder in others])
+            yield Task(first / name / f"{k}.png", scene, mode, "noon", pose, k, [folder / name / f"{k}.png" for folder in others])
         for light, folder in folders.items():
             yield Task(folder / "frames" / f"{k}.png", scene, IMAGE, light, pose, k, [])
 
@@ -176,13 +174,10 @@ def render_all(tasks, size, jobs, run_task=run):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path, help="output folder; existing pictures are kept")
-    parser.add_argument("--scenes", nargs="+", choices=STILLS, default=STILLS, metavar="SCENE",
-                        help=f"some of: {', '.join(STILLS)} (all)")
-    parser.add_argument("--frames", type=int, default=0,
-                        help="also render walks of this many frames (0: none)")
+    parser.add_argument("--scenes", nargs="+", choices=STILLS, default=STILLS, metavar="SCENE", help=f"some of: {', '.join(STILLS)} (all)")
+    parser.add_argument("--frames", type=int, default=0, help="also render walks of this many frames (0: none)")
     parser.add_argument("--size", type=int, nargs=2, default=(640, 480), metavar=("WIDTH", "HEIGHT"))
-    parser.add_argument("--quick", action="store_true",
-                        help="one ray a pixel and a blur instead of antialiasing")
+    parser.add_argument("--quick", action="store_true", help="one ray a pixel and a blur instead of antialiasing")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
     options = parser.parse_args()
     if options.frames < 0 or min(options.size) < 16 or options.jobs < 1:

@@ -6,9 +6,7 @@
 #include "materials.inc"
 #include "plants.inc"
 
-#declare HalfWidth = 2.6;
-#declare Deep = 6.2;
-#declare High = 2.75;
+#declare HalfWidth = 2.6; #declare Deep = 6.2; #declare High = 2.75;
 #declare RoomSeed = seed(41 + 100 * Seed);
 #macro Any(From, To) (From + (To - From) * rand(RoomSeed)) #end
 #macro AnyTint(From, To) <Any(From, To), Any(From, To), Any(From, To)> #end
@@ -54,9 +52,7 @@
     #for (I, 0, Shelves - 1)
         #local From = int(Any(0, 1.4)) * 0.35;
         union { Books(Wide - 0.08 - From, 0.27) translate <0.04 + From, 0.34 * I + 0.066, 0.04> }
-        #if (From > 0)
-            sphere { <0.2, 0.34 * I + 0.16, 0.12>, 0.09 Surface(OBJECT, StoneTexture(AnyTint(0.2, 0.8), I)) }
-        #end
+        #if (From > 0) sphere { <0.2, 0.34 * I + 0.16, 0.12>, 0.09 Surface(OBJECT, StoneTexture(AnyTint(0.2, 0.8), I)) } #end
     #end
 #end
 
@@ -75,14 +71,12 @@
                 #local C = AnyTint(0.3, 0.95);
                 pigment {
                     #switch (mod(Kind + Seed, 4))
-                        #case (0) gradient y turbulence 0.25 scale 1.3 * Tall
-                        translate -0.65 * Tall * y #break
+                        #case (0) gradient y turbulence 0.25 scale 1.3 * Tall translate -0.65 * Tall * y #break
                         #case (1) crackle scale 0.12 translate X #break
                         #case (2) bozo turbulence 0.8 scale 0.15 translate X #break
                         #case (3) leopard turbulence 0.3 scale 0.03 #break
                     #end
-                    color_map { [0.1 rgb A] [0.3 rgb B] [0.35 rgb C] [0.5 rgb A] [0.6 rgb C] [0.62 rgb B]
-                        [0.9 rgb C] }
+                    color_map { [0.1 rgb A] [0.3 rgb B] [0.35 rgb C] [0.5 rgb A] [0.6 rgb C] [0.62 rgb B] [0.9 rgb C] }
                 }
             })
         }
@@ -95,8 +89,7 @@
     union {
         box { <-0.21, 0.43, -0.21>, <0.21, 0.47, 0.21> }
         #for (I, 0, 1) #for (J, 0, 1)
-            cylinder { <-0.18 + 0.36 * I, 0, -0.18 + 0.36 * J>,
-                <-0.18 + 0.36 * I, 0.43 + 0.5 * J, -0.18 + 0.4 * J>, 0.02 }
+            cylinder { <-0.18 + 0.36 * I, 0, -0.18 + 0.36 * J>, <-0.18 + 0.36 * I, 0.43 + 0.5 * J, -0.18 + 0.4 * J>, 0.02 }
         #end #end
         #for (I, 0, 3) box { <-0.19, 0.58 + 0.09 * I, 0.19>, <0.19, 0.63 + 0.09 * I, 0.215> } #end
         Surface(FURNITURE, WoodTexture(<0.45, 0.28, 0.14>, X))
@@ -117,8 +110,7 @@
         cone {
             0, 0.6 * Size, 0.9 * Size * y, 0.35 * Size open no_shadow
             Surface(LAMP, texture {
-                pigment { radial frequency 24 color_map { [0 rgb <0.8, 0.65, 0.4>] [1 rgb <0.6, 0.45, 0.25>] }
-                    }
+                pigment { radial frequency 24 color_map { [0 rgb <0.8, 0.65, 0.4>] [1 rgb <0.6, 0.45, 0.25>] } }
                 finish { emission LampsOn * <1.6, 1.3, 0.8> }
             })
         }

@@ -5,8 +5,7 @@ from collections import namedtuple
 import numpy as np
 
 # Numbers as in lights.inc. The reference (picture 1) is noon.
-LIGHTS = {"noon": 1, "morning": 2, "dusk": 3, "night": 4, "overcast": 5, "fog": 6, "winter": 7, "wet": 8,
-          "snow": 9}
+LIGHTS = {"noon": 1, "morning": 2, "dusk": 3, "night": 4, "overcast": 5, "fog": 6, "winter": 7, "wet": 8, "snow": 9}
 
 # Standard deviation of the sensor's noise, grey levels; darkness needs more gain.
 NOISE = {"night": 6.0, "dusk": 4.0, "fog": 3.0, "wet": 2.0}

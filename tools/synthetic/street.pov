@@ -49,13 +49,8 @@
         cylinder { <-0.35, 3.3, 0>, <0.35, 3.3, 0>, 0.02 }
         cone { 4.42 * y, 0.26, 4.66 * y, 0.03 }
         cone { 3.85 * y, 0.1, 3.95 * y, 0.16 }
-        #for (I, 0, 3)
-            cylinder { <0.15, 3.95, 0>, <0.23, 4.42, 0>, 0.014 rotate (45 + 90 * I) * y }
-        #end
-        cone {
-            3.96 * y, 0.13, 4.41 * y, 0.2 no_shadow
-            Surface(LAMP, GlowTexture(<0.8, 0.75, 0.6>, 3.2 * LampsOn * <1, 0.8, 0.5>))
-        }
+        #for (I, 0, 3) cylinder { <0.15, 3.95, 0>, <0.23, 4.42, 0>, 0.014 rotate (45 + 90 * I) * y } #end
+        cone { 3.96 * y, 0.13, 4.41 * y, 0.2 no_shadow Surface(LAMP, GlowTexture(<0.8, 0.75, 0.6>, 3.2 * LampsOn * <1, 0.8, 0.5>)) }
         LampLight(4.1 * y, <4.2, 3.0, 1.6>, 2.2)
         Surface(LAMP, MetalTexture(<0.06, 0.09, 0.08>))
         translate <X, 0.12, Z>
@@ -126,16 +121,12 @@
             #local Paper = <Any(0.2, 0.9), Any(0.2, 0.8), Any(0.1, 0.7)>;
             #local Ink = <Any(0, 0.4), Any(0, 0.3), Any(0, 0.3)>;
             union {
-                intersection {
-                    cylinder { 0, y, 0.56 + 0.001 * I }
-                    box { <-0.28, 0.02, -1>, <0.28, 0.9, 0> }
-                }
+                intersection { cylinder { 0, y, 0.56 + 0.001 * I } box { <-0.28, 0.02, -1>, <0.28, 0.9, 0> } }
                 Surface(SIGN, texture {
                     pigment {
                         gradient y scale Any(0.3, 0.9)
                         pigment_map {
-                            [0.35 bozo turbulence 0.4 scale 0.12 translate I
-                                color_map { [0.45 rgb Paper] [0.5 rgb Ink] }]
+                            [0.35 bozo turbulence 0.4 scale 0.12 translate I color_map { [0.45 rgb Paper] [0.5 rgb Ink] }]
                             [0.4 rgb Paper]
                             [0.5 gradient y scale 0.07 color_map { [0.5 rgb Paper] [0.5 rgb Ink] }]
                             [0.9 cells scale 0.09 color_map { [0 rgb Paper] [1 rgb Ink] }]

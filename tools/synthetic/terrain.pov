@@ -9,14 +9,11 @@
 // Height field of 200 m x 200 m in front of the camera, made by a pattern; the path along x = 0 is level.
 #declare Side = 200;
 #declare Rise = 46;
-#declare Rough = function {
-    pigment { granite scale 1.1 translate <3.3, 1.7, 5.1> + SeedShift color_map { [0 rgb 0] [1 rgb 1] } } }
-#declare Folds = function { pigment { bozo scale 0.22 translate <8, 1, 2> + SeedShift color_map { [0 rgb 0] [1 rgb 1] } }
-    }
+#declare Rough = function { pigment { granite scale 1.1 translate <3.3, 1.7, 5.1> + SeedShift color_map { [0 rgb 0] [1 rgb 1] } } }
+#declare Folds = function { pigment { bozo scale 0.22 translate <8, 1, 2> + SeedShift color_map { [0 rgb 0] [1 rgb 1] } } }
 #declare Steps = function { pigment { wrinkles scale 0.07 translate 4.4 + SeedShift color_map { [0 rgb 0] [1 rgb 1] } } }
 #declare Valley = function(u, v) {
-    min(1, 0.9 * pow(min(1, max(0, abs(u - 0.5 - 0.02 * sin(9 * v - 0.4)) - 0.012) * 3.2),
-        1.5) + 0.55 * pow(v, 3))
+    min(1, 0.9 * pow(min(1, max(0, abs(u - 0.5 - 0.02 * sin(9 * v - 0.4)) - 0.012) * 3.2), 1.5) + 0.55 * pow(v, 3))
 }
 #declare Height = function(u, v) {
     Valley(u, v) * (0.30 + 0.45 * Folds(u, v, 0).red + 0.20 * Rough(u, v, 0).red + 0.09 * Steps(u, v, 0).red)
@@ -24,12 +21,7 @@
 }
 
 #declare Offset = <-Side / 2, 0, -6>;
-#declare Land = height_field {
-    function 500, 500 { Height(x, 1 - y) }
-    smooth
-    scale <Side, Rise, Side>
-    translate Offset
-}
+#declare Land = height_field { function 500, 500 { Height(x, 1 - y) } smooth scale <Side, Rise, Side> translate Offset }
 
 #macro PathAt(Z) (4 * sin(0.045 * (Z + 6) - 0.4)) #end
 // The ground under (X, Z): its point and its normal.
@@ -40,12 +32,8 @@
     pigment {
         pigment_pattern { bozo turbulence 0.6 scale 5 translate SeedShift }
         pigment_map {
-            [0.3 granite scale 0.8
-                color_map { [0 rgb <0.05, 0.08, 0.02>] [0.5 rgb <0.16, 0.23, 0.06>]
-                    [1 rgb <0.33, 0.33, 0.13>] }]
-            [0.7 granite scale 0.5
-                color_map { [0 rgb <0.09, 0.08, 0.03>] [0.5 rgb <0.30, 0.27, 0.11>]
-                    [1 rgb <0.45, 0.40, 0.20>] }]
+            [0.3 granite scale 0.8 color_map { [0 rgb <0.05, 0.08, 0.02>] [0.5 rgb <0.16, 0.23, 0.06>] [1 rgb <0.33, 0.33, 0.13>] }]
+            [0.7 granite scale 0.5 color_map { [0 rgb <0.09, 0.08, 0.03>] [0.5 rgb <0.30, 0.27, 0.11>] [1 rgb <0.45, 0.40, 0.20>] }]
         }
     }
     normal { granite 1.0 scale 0.4 }
@@ -75,10 +63,7 @@
         function { max(0, 1 - abs(x - 4 * sin(0.045 * (z + 6) - 0.4) - 0.3 * sin(0.9 * z)) / 3) }
         color_map { [0 rgb 0] [1 rgb 1] }
     }
-    texture_map {
-        [0.44 slope { y } texture_map { [0.80 Cliff] [0.87 Grass] }]
-        [0.56 Gravel]
-    }
+    texture_map { [0.44 slope { y } texture_map { [0.80 Cliff] [0.87 Grass] }] [0.56 Gravel] }
 }
 
 // A boulder of radius 1: a deformed ball, as a mesh.
@@ -106,11 +91,7 @@
 #macro Fir(High, Tint)
     union {
         cone { -0.5 * y, 0.03 * High, High * y, 0.01 Surface(WOOD, BarkTexture(High)) }
-        object {
-            Needles
-            Surface(PLANT, LeafTexture(Tint))
-            scale <High * 0.24, High, High * 0.24> rotate Grown(0, 360) * y
-        }
+        object { Needles Surface(PLANT, LeafTexture(Tint)) scale <High * 0.24, High, High * 0.24> rotate Grown(0, 360) * y }
     }
 #end
 

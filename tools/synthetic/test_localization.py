@@ -38,8 +38,7 @@ class Poses(unittest.TestCase):
         rows = np.loadtxt(localization.imu(4).splitlines()[1:], delimiter=",")
         times = rows[:, 0] * 1e-9
         for start in range(0, len(rows) - 200, 200):  # integrates each second from the path's exact state
-            before, here, after = (localization.camera_to_world(pose)
-                                   for pose in localization.visit(times[start] + np.array([-1e-4, 0, 1e-4])))
+            before, here, after = (localization.camera_to_world(pose) for pose in localization.visit(times[start] + np.array([-1e-4, 0, 1e-4])))
             place, velocity, turn = here[:3, 3].copy(), (after - before)[:3, 3] / 2e-4, here[:3, :3].copy()
             for k in range(start, start + 200):
                 step = times[k + 1] - times[k]

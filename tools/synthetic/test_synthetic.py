@@ -71,8 +71,7 @@ class KnownGeometry(unittest.TestCase):
     def test_rendering_is_repeated_after_a_crash(self):
         with tempfile.TemporaryDirectory() as folder:
             program, crashed = pathlib.Path(folder) / "povray", pathlib.Path(folder) / "crashed"
-            program.write_text(f'#!/bin/sh\n[ -e {crashed} ] || {{ touch {crashed}; kill -SEGV $$; }}\n'
-                               f'exec {shutil.which("povray")} "$@"\n')
+            program.write_text(f'#!/bin/sh\n[ -e {crashed} ] || {{ touch {crashed}; kill -SEGV $$; }}\n' f'exec {shutil.which("povray")} "$@"\n')
             program.chmod(0o755)
             with unittest.mock.patch.dict("os.environ", PATH=f"{folder}:/usr/bin:/bin"):
                 depth = render_plane(render.DEPTH, (0, 1, 0, 0, 0))
@@ -100,8 +99,7 @@ class Scenes(unittest.TestCase):
             scene = scenes.SCENES[name]
             self.assertGreaterEqual(len(scene.lights), 8)
             self.assertEqual(scene.lights[0], "noon")
-            depth, labels = (render.povray(name, mode, "noon", scene.still, (80, 60))
-                             for mode in (render.DEPTH, render.LABELS))
+            depth, labels = (render.povray(name, mode, "noon", scene.still, (80, 60)) for mode in (render.DEPTH, render.LABELS))
             for light in ("night", scene.lights[-1]):
                 again = render.povray(name, render.DEPTH, light, scene.still, (80, 60))
                 np.testing.assert_array_equal(depth, again, f"{name}, {light}")
@@ -112,8 +110,7 @@ class Scenes(unittest.TestCase):
     def test_a_seed_makes_a_different_but_repeatable_instance(self):
         for name in scenes.SCENES.keys() - {"plane"}:
             still = scenes.SCENES[name].path[1]
-            first, second, again = (render.povray(name, render.LABELS, "noon", still, (80, 60), seed=seed)
-                                    for seed in (0, 1, 1))
+            first, second, again = (render.povray(name, render.LABELS, "noon", still, (80, 60), seed=seed) for seed in (0, 1, 1))
             np.testing.assert_array_equal(second, again, name)
             self.assertGreater((first != second).mean(), 0.02, name)
 

@@ -54,8 +54,7 @@ def main():
     parser.add_argument("out", type=pathlib.Path, help="output folder; existing pictures are kept")
     parser.add_argument("--scenes", nargs="+", choices=SCENES, default=STILLS, metavar="SCENE",
                         help=f"some of: {', '.join(SCENES)} ({' '.join(STILLS)})")
-    parser.add_argument("--seed", nargs="+", type=int, default=[1, 2, 3],
-                        help="seeds of the instances; 0 is the scene of the other programs (1 2 3)")
+    parser.add_argument("--seed", nargs="+", type=int, default=[1, 2, 3], help="seeds of the instances; 0 is the scene of the other programs (1 2 3)")
     parser.add_argument("--lights", nargs="*", choices=LIGHTS, default=LIGHTS, metavar="LIGHT",
                         help=f"other than noon: some of {', '.join(LIGHTS)} (all)")
     parser.add_argument("--nearer", nargs=2, type=float, action="append", default=[], metavar=("METRES", "ROLL"),

@@ -26,9 +26,7 @@
     union {
         cylinder { 0, Height * y, Radius Surface(WALL, SheetTexture(Tint, X + 3 * Z)) }
         cone { Height * y, Radius, (Height + 0.25 * Radius) * y, 0.3 Surface(ROOF, SheetTexture(0.8 * Tint, X)) }
-        #for (I, 1, Height / 1.4)
-            torus { Radius, 0.03 translate 1.4 * I * y Surface(WALL, MetalTexture(0.6 * Tint)) }
-        #end
+        #for (I, 1, Height / 1.4) torus { Radius, 0.03 translate 1.4 * I * y Surface(WALL, MetalTexture(0.6 * Tint)) } #end
         #for (I, 0, 11)
             cylinder { <Radius * cos(pi * I / 6), Height, Radius * sin(pi * I / 6)>, <Radius * cos(pi * I / 6), Height + 0.9, Radius * sin(pi * I / 6)>, 0.025
                 Surface(OBJECT, MetalTexture(<0.6, 0.5, 0.1>)) }

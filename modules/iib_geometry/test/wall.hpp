@@ -30,6 +30,28 @@ inline cv::Affine3d poseAt(double x, double y, double yaw)
     return cv::Affine3d(cv::Vec3d(0, yaw, 0), cv::Vec3d(x, y, 0.2 * x));
 }
 
+inline const cv::Affine3d TRUTH = poseAt(0.1, -0.1, 0.1);
+
+//! Poses along the wall, of which a map has the first six.
+inline cv::Affine3d pathPose(int i) { return poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i); }
+
+//! Names of images along the wall, three of them in a subfolder.
+inline std::string pathName(int i) { return (i < 3 ? "left side/" : "") + std::to_string(i) + ".png"; }
+
+inline cv::Vec3d centre(const Location& location) { return inverse(location.cameraFromWorld).translation(); }
+
+//! Expects a pose whose position is that near to the true one, and whose rotation is within half a degree.
+inline void expectAt(const cv::Affine3d& truth, const Location& location, double metres)
+{
+    ASSERT_TRUE(location.found) << location.reason;
+    EXPECT_EQ("", location.reason);
+    EXPECT_LT(cv::norm(centre(location) - truth.translation()), metres);
+    EXPECT_LT(cv::norm((truth * location.cameraFromWorld).rvec()), 0.5 * CV_PI / 180);
+    EXPECT_GE(int(location.pixels.size()), location.inliers);
+    EXPECT_EQ(location.pixels.size(), location.points.size());
+    EXPECT_GE(location.matches, location.inliers);
+}
+
 /** A slanted, textured wall 4 m from the origin: points (x, y, 4 + 0.4 x), with 120 pixels of texture a metre. */
 class Wall
 {
@@ -97,10 +119,10 @@ struct WallScene
         const auto iib = IIB::createRecommended(map.keypoints);
         for (int i = 0; i < 6; i++)
         {
-            const cv::Affine3d pose = poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i);
+            const cv::Affine3d pose = pathPose(i);
             const cv::Mat picture = wall.image(pose);
             MapImage image;
-            image.name = (i < 3 ? "left side/" : "") + std::to_string(i) + ".png";
+            image.name = pathName(i);
             image.camera = CAMERA;
             image.cameraFromWorld = inverse(pose);
             std::vector<cv::KeyPoint> keypoints;
@@ -169,15 +191,15 @@ protected:
         for (double parameter : CAMERA.parameters)
             put(cameras, parameter);
         put<uint64_t>(posed, 7);
-        for (uint32_t i = 0; i < 7; i++)
+        for (int i = 0; i < 7; i++)
         {
-            const cv::Affine3d world = poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i);
+            const cv::Affine3d world = pathPose(i);
             const cv::Matx33d rotation = world.rotation().t();
-            put(posed, 10 + i);
+            put(posed, uint32_t(10 + i));
             put(posed, cv::Quatd::createFromRotMat(rotation).toVec());
             put(posed, cv::Vec3d(-(rotation * (world.translation() * unit + origin))));
             put<uint32_t>(posed, 5);
-            posed += (i < 3 ? "left side/" : "") + std::to_string(i) + ".png" + '\0';
+            posed += pathName(i) + '\0';
             put<uint64_t>(posed, uint64_t(points));
             for (int64_t point = 0; point < points; point++)
             {

@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
-"""Looks up what doc/paper.md names, and what the other pages do: check_names.py BUILD
+"""Looks up what pages name: check_names.py BUILD
 
-Files of links, and that a file of source that is linked by a symbol's name has it; anchors; scripts and, of the programs that are in
-the folder BUILD, options and experiments, by their --help; columns of CSV files and rows of them, as in "rows `a.csv`: `NAME`,
-`NAME`". Then each kind of name is broken in a copy of the paper's page, and that
-must be found.
+Files and anchors of links; the symbol of a link to a source file; scripts; options and experiments of programs in the folder BUILD, by
+their --help; columns and rows of CSV files, as in "rows `a.csv`: `NAME`, `NAME`".
 """
 import functools
 import pathlib
@@ -17,7 +15,6 @@ BUILD = pathlib.Path(sys.argv[1])
 PROGRAMS = {'evaluate.sh': 'tools/evaluation/iib_evaluation', 'train.sh': 'tools/training/iib_train'}
 COMMANDS = '--help' + (ROOT / 'python/opencv_iib/__main__.py').read_text()  # has the options of opencv-iib
 EVALUATION = BUILD / PROGRAMS['evaluate.sh']
-MANY = 40  # links that the paper's page has at least
 
 
 def anchors(text):
@@ -79,29 +76,9 @@ def wrong(text, page):
     return [*wrong_links(text, page), *wrong_commands(text), *wrong_rows(text)]
 
 
-def broken(text):
-    """Copies of the page with one name altered in each, and what must be said of it; of programs that were built."""
-    for pattern, new, said in ((r'/mappings\.hpp\)', '/gone.hpp)', 'there is no'), ('`SortMapping`', '`GoneMapping`', 'is not in'),
-                               (r'index\.html#curves', 'index.html#gone', 'no anchor'), (r'\(#fewer-bits\)', '(#gone)', 'no anchor'),
-                               ('--adaboost', '--gone', 'no option'), ('--only matching', '--only gone', 'no experiment'),
-                               ('`IIB quartile`', '`IIB gone`', 'no row'), ('column `cost`', 'column `gone`', 'no column'),
-                               (r'scripts/demo\.sh', 'scripts/gone.sh', 'there is no'),
-                               (r'`tools/pages\S+', '`tools/gone.py', 'there is no'), ('localize --imu', 'localize --gone', 'no option')):
-        needed = 'train.sh' if 'adaboost' in pattern else 'evaluate.sh' if said == 'no experiment' else None
-        if not needed or (BUILD / PROGRAMS[needed]).is_file():
-            yield re.subn(pattern, new, text, count=1), said
-
-
 def main():
     found = ['%s: %s' % (page.relative_to(ROOT), what) for pages in ('*.md', 'doc/**/*.md', '*/*/README.md', '*/*/tutorials/*.markdown')
              for page in ROOT.glob(pages) for what in wrong(page.read_text(), page)]
-    page = ROOT / 'doc/paper.md'
-    text = page.read_text()
-    if len(re.findall(r'\]\(', text)) < MANY:
-        found.append('the page names hardly anything')
-    for (altered, count), said in broken(text):
-        if not count or not any(said in what for what in wrong(altered, page)):
-            found.append('a name that is not there is not found: "%s"' % said)
     sys.exit('\n'.join(found) or 0)
 
 

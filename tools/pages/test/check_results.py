@@ -24,8 +24,7 @@ assert re.search("<td>IIB</td>.*<td[^>]*>%.3f " % (sum(recalls) / len(recalls)),
 for section in ("all", "detectors", "curves", "pictures", "moved", "poses", "run"):
     assert 'id="%s"' % section in text, section
 for name in ("IIB", "IIB BALANCED", "ORB", "SIFT", "AKAZE-486"):
-    assert re.search(r'<td>%s( <span class="tag">learned</span>)?</td><td>\d+</td><td data-value="[\d.]+">' % name,
-                     text), name
+    assert re.search(r'<td>%s( <span class="tag">learned</span>)?</td><td>\d+</td><td data-value="[\d.]+">' % name, text), name
 for meaning in re.findall(r"<dd>(.*?)</dd>", text):
     assert meaning.endswith(".") and ". " not in meaning, meaning  # a metric is told in one sentence
 for method in ("recommended chain", "ORB"):
@@ -34,6 +33,5 @@ for link in re.findall(r'(?:src|href)="([^"#]+)"', text):
     assert os.path.exists(os.path.join(page, link)), link
 assert len(text) < 200000, len(text)
 
-empty = subprocess.run([sys.executable, "-B", tools / "pages.py", "--results", os.path.join(results, "pictures")], stderr=subprocess.PIPE,
-                       text=True)
+empty = subprocess.run([sys.executable, "-B", tools / "pages.py", "--results", os.path.join(results, "pictures")], stderr=subprocess.PIPE, text=True)
 assert empty.returncode != 0 and "no results" in empty.stderr and len(empty.stderr.splitlines()) == 1

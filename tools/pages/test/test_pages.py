@@ -102,19 +102,6 @@ class Figures(unittest.TestCase):
         one = summaries.interval([[0] * 50, [1] * 50])  # whole scenes are drawn: two say little
         self.assertEqual(one, [0, 1])
 
-    def test_differences_are_of_the_same_pairs(self):
-        lines = ['set,sequence,target,detector,descriptor,points,estimator,error']
-        for target, ours, others in ((1, 0, 2.5), (2, 5, 5), (3, 1, None)):
-            lines.append('street_2,night,%d,Hessian,IIB UNIVERSAL,propagated,findRelativePose,%s' % (target, ours))
-            if others is not None:
-                lines.append('street_2,dusk,%d,ORB,ORB,plain,MAGSAC 1 px,0\nstreet_2,night,%d,ORB,ORB,plain,MAGSAC 1 px,%s' % (target, target, others))
-        with tempfile.TemporaryDirectory() as folder:
-            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
-            source.write_text('\n'.join(lines))
-            summaries.summarize_differences(source, target)
-            self.assertEqual([line.split(',')[5:] for line in target.read_text().splitlines()[1:]],
-                             [['3', '0', '0', '0'], ['2', '0.25', '0.25', '0.25']])
-
     def test_a_ratio_is_chosen_on_other_places(self):
         heads = 'set,sequence,target,detector,descriptor,noise,ratio,error,matches'
         errors = {('yard_2', '0.8'): 0, ('yard_2', '0.9'): 5, ('room_2', '0.8'): 2.5, ('room_2', '0.9'): 1, ('court_2', '0.8'): 'inf', ('court_2', '0.9'): 2.5}

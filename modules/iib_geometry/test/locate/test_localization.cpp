@@ -7,25 +7,13 @@ namespace opencv_test {
 namespace {
 using namespace cv::iib;
 
-const cv::Affine3d TRUTH = poseAt(0.1, -0.1, 0.1);
-
-void expectAt(const cv::Affine3d& truth, const Location& location, double metres)
+struct Localization : public WallTest
 {
-    ASSERT_TRUE(location.found) << location.reason;
-    EXPECT_EQ("", location.reason);
-    const cv::Affine3d difference = truth * location.cameraFromWorld;
-    EXPECT_LT(cv::norm(inverse(location.cameraFromWorld).translation() - truth.translation()), metres);
-    EXPECT_LT(cv::norm(difference.rvec()), 0.5 * CV_PI / 180);
-    EXPECT_GE(int(location.pixels.size()), location.inliers);
-    EXPECT_EQ(location.pixels.size(), location.points.size());
-    EXPECT_GE(location.matches, location.inliers);
-}
-
-typedef WallTest Localization;
+    const Localizer localizer{folder.path("map")};
+};
 
 TEST_F(Localization, under_changed_illumination)
 {
-    const Localizer localizer(folder.path("map"));
     const cv::Mat image = wall.image(TRUTH);
     expectAt(TRUTH, localizer.localize(image, CAMERA), 0.01);
     cv::Mat dark, colour;
@@ -39,7 +27,6 @@ TEST_F(Localization, under_changed_illumination)
 
 TEST_F(Localization, of_files_with_a_rotated_image)
 {
-    const Localizer localizer(folder.path("map"));
     const cv::Mat image = wall.image(TRUTH);
     for (int orientation : {3, 6, 8})
     {
@@ -49,16 +36,17 @@ TEST_F(Localization, of_files_with_a_rotated_image)
                 : orientation == 6 ? cv::ROTATE_90_COUNTERCLOCKWISE
                                    : cv::ROTATE_90_CLOCKWISE);
         const Camera camera = CAMERA.upright(orientation == 3 ? 3 : 14 - orientation);  // rotated back
-        const Location location = localizer.localize(stored, camera, nullptr, orientation);
-        ASSERT_TRUE(location.found) << location.reason;
-        EXPECT_LT(cv::norm(inverse(location.cameraFromWorld).translation() - TRUTH.translation()), 0.01);
-        const std::vector<cv::Point2d> seen =
+        const Location location = localizer.localize(stored, camera, nullptr, orientation),
+                       without = localizer.localize(stored, camera);
+        for (const Location& found : {location, without})
+        {
+            ASSERT_TRUE(found.found) << found.reason;
+            EXPECT_LT(cv::norm(centre(found) - TRUTH.translation()), 0.01);
+        }
+        const std::vector<cv::Point2d> projected =
                 camera.project(inCamera(location.points, location.cameraFromWorld));
-        for (size_t i = 0; i < seen.size(); i++)
-            EXPECT_LT(cv::norm(seen[i] - location.pixels[i]), 2);
-        const Location turned = localizer.localize(stored, camera);  // without its orientation
-        ASSERT_TRUE(turned.found) << turned.reason;
-        EXPECT_LT(cv::norm(inverse(turned.cameraFromWorld).translation() - TRUTH.translation()), 0.01);
+        for (size_t i = 0; i < projected.size(); i++)
+            EXPECT_LT(cv::norm(projected[i] - location.pixels[i]), 2);
     }
     for (int orientation : {2, 4, 5, 7, 9})  // mirrored, and an invalid one
     {
@@ -74,7 +62,6 @@ cv::Affine3d rolled(const cv::Affine3d& worldFromCamera, double degrees)
 
 TEST_F(Localization, at_any_rotation_and_from_reduced_images)
 {
-    const Localizer localizer(folder.path("map"));
     for (double degrees : {45., 200.})
     {
         const cv::Affine3d truth = rolled(TRUTH, degrees);
@@ -93,20 +80,18 @@ TEST_F(Localization, in_a_map_of_rotated_photographs)
 {
     std::vector<PosedImage> images;
     for (int i = 0; i < 6; i++)
-        images.push_back({std::to_string(i), CAMERA,
-                inverse(rolled(poseAt(0.3 * i - 0.8, 0.05 * (i % 2), 0.03 * i), i % 2 * 130)), {}, {}});
+        images.push_back({std::to_string(i), CAMERA, inverse(rolled(pathPose(i), i % 2 * 130)), {}, {}});
     folder.makeFolder("rotated");
     writeModel(folder.path("rotated"), images);
-    const Localizer localizer(folder.path("rotated"), [&](const std::string& name) {
+    const Localizer rotated(folder.path("rotated"), [&](const std::string& name) {
         return Photograph(wall.image(inverse(images[size_t(std::stoi(name))].cameraFromWorld)));
     });
-    expectAt(TRUTH, localizer.localize(wall.image(TRUTH), CAMERA), .02);
+    expectAt(TRUTH, rotated.localize(wall.image(TRUTH), CAMERA), .02);
 }
 
 // A symmetric part of a mirrored image agrees with a wrong pose.
 TEST_F(Localization, mirrored_images_are_refused_where_a_part_is_symmetric)
 {
-    const Localizer localizer(folder.path("map"));
     const Affine3d pose = poseAt(.1, 0, .05);
     const Mat image = wall.image(pose);
     Mat mirrored;
@@ -124,7 +109,6 @@ TEST_F(Localization, mirrored_images_are_refused_where_a_part_is_symmetric)
 
 TEST_F(Localization, uses_only_what_a_mask_allows)
 {
-    const Localizer localizer(folder.path("map"));
     cv::Mat mask(SIZE, CV_8U, cv::Scalar(1));
     mask.colRange(0, SIZE.width / 2) = 0;
     const Location location = localizer.localize(wall.image(TRUTH), CAMERA, nullptr, 1, mask);
@@ -137,7 +121,6 @@ TEST_F(Localization, uses_only_what_a_mask_allows)
 
 TEST_F(Localization, with_distorted_cameras)
 {
-    const Localizer localizer(folder.path("map"));
     for (const char* text : {"SIMPLE_RADIAL,320,240,240,160,120,-0.1", "RADIAL,320,240,240,160,120,-0.1,0.02",
                  "OPENCV,320,240,240,242,161,119,-0.1,0.02,0.002,-0.001",
                  "OPENCV_FISHEYE,320,240,200,201,161,119,0.02,-0.01,0.003,0.001"})
@@ -159,22 +142,25 @@ TEST_F(Localization, with_distorted_cameras)
     }
 }
 
+cv::Mat noisy(const cv::Mat& image, cv::RNG& random)
+{
+    cv::Mat noise(image.size(), CV_16S), result;
+    random.fill(noise, cv::RNG::NORMAL, 0, 6);
+    cv::add(image, noise, result, cv::noArray(), CV_8U);
+    return result;
+}
+
 TEST_F(Localization, covariance_matches_repeated_measurements)
 {
-    const Localizer localizer(folder.path("map"));
     const cv::Mat image = wall.image(TRUTH);
     cv::RNG random(5);
-    cv::Vec6d squares;
-    cv::Vec6d reported;
+    cv::Vec6d squares, reported;
     constexpr int COUNT = 20;
     for (int i = 0; i < COUNT; i++)
     {
-        cv::Mat noise(SIZE, CV_16S), noisy;
-        random.fill(noise, cv::RNG::NORMAL, 0, 6);
-        cv::add(image, noise, noisy, cv::noArray(), CV_8U);
-        const Location location = localizer.localize(noisy, CAMERA);
+        const Location location = localizer.localize(noisy(image, random), CAMERA);
         ASSERT_TRUE(location.found) << location.reason;
-        const cv::Vec3d moved = inverse(location.cameraFromWorld).translation() - TRUTH.translation();
+        const cv::Vec3d moved = centre(location) - TRUTH.translation();
         const cv::Vec3d turned = cv::Affine3d((TRUTH * location.cameraFromWorld).rotation().t()).rvec();
         for (int k = 0; k < 3; k++)
         {
@@ -194,20 +180,15 @@ TEST_F(Localization, covariance_matches_repeated_measurements)
 // Without guided matches the error is .67 mm.
 TEST_F(Localization, guided_matches_improve_poses)
 {
-    const Localizer localizer(folder.path("map"));
     constexpr int COUNT = 12;
     cv::RNG random(3);
     double squares = 0;
     for (int i = 0; i < COUNT; i++)
     {
         const cv::Affine3d truth = poseAt(0.1 * i - 0.6, -0.1, 0.02 * i);
-        cv::Mat noise(SIZE, CV_16S), noisy;
-        random.fill(noise, cv::RNG::NORMAL, 0, 6);
-        cv::add(wall.image(truth), noise, noisy, cv::noArray(), CV_8U);
-        const Location location = localizer.localize(noisy, CAMERA);
+        const Location location = localizer.localize(noisy(wall.image(truth), random), CAMERA);
         ASSERT_TRUE(location.found) << location.reason;
-        const double off = cv::norm(inverse(location.cameraFromWorld).translation() - truth.translation());
-        squares += off * off / COUNT;
+        squares += std::pow(cv::norm(centre(location) - truth.translation()), 2) / COUNT;
     }
     EXPECT_LT(std::sqrt(squares), 0.00055);
 }
@@ -223,20 +204,19 @@ TEST_F(Localization, prepared_images_are_refined_like_images)
             k.emplace_back(cv::Point2f(float(20 + 5 * i), float(30 + 3 * i)), 12.f);
         matches.emplace_back(i, i, 0.f);
     }
-    cv::Mat expected[4], found[4];
-    cv::iib::refineMatches(one, keypoints[0], other, keypoints[1], matches, expected[0], expected[1],
-            expected[2], expected[3]);
-    const cv::iib::PreparedImage first(one), second(other);
-    cv::iib::refineMatches(
-            first, keypoints[0], second, keypoints[1], matches, found[0], found[1], found[2], found[3]);
-    EXPECT_GT(cv::countNonZero(expected[3] > 0), 10);
-    for (int i = 0; i < 4; i++)
-        EXPECT_EQ(0, cv::norm(expected[i], found[i], cv::NORM_INF)) << i;
+    cv::Mat a[4], b[4];
+    const auto expectSame = [&] {
+        for (int i = 0; i < 4; i++)
+            EXPECT_EQ(0, cv::norm(a[i], b[i], cv::NORM_INF)) << i;
+    };
+    const PreparedImage first(one), second(other);
+    refineMatches(one, keypoints[0], other, keypoints[1], matches, a[0], a[1], a[2], a[3]);
+    refineMatches(first, keypoints[0], second, keypoints[1], matches, b[0], b[1], b[2], b[3]);
+    EXPECT_GT(cv::countNonZero(a[3] > 0), 10);
+    expectSame();
     std::vector<cv::DMatch> some(matches.begin(), matches.begin() + 25), others = some;
-    cv::iib::propagateMatches(
-            one, keypoints[0], other, keypoints[1], some, expected[0], expected[1], expected[2], expected[3]);
-    cv::iib::propagateMatches(
-            first, keypoints[0], second, keypoints[1], others, found[0], found[1], found[2], found[3]);
+    propagateMatches(one, keypoints[0], other, keypoints[1], some, a[0], a[1], a[2], a[3]);
+    propagateMatches(first, keypoints[0], second, keypoints[1], others, b[0], b[1], b[2], b[3]);
     EXPECT_GT(some.size(), 25u);
     ASSERT_EQ(some.size(), others.size());
     const auto partsOf = [](const cv::DMatch& m) {
@@ -244,14 +224,12 @@ TEST_F(Localization, prepared_images_are_refined_like_images)
     };
     for (size_t i = 0; i < some.size(); i++)
         EXPECT_EQ(partsOf(some[i]), partsOf(others[i])) << i;
-    for (int i = 0; i < 4; i++)
-        EXPECT_EQ(0, cv::norm(expected[i], found[i], cv::NORM_INF)) << i;
-    EXPECT_NE("", messageOf([] { cv::iib::PreparedImage(cv::Mat()); }));
+    expectSame();
+    EXPECT_NE("", messageOf([] { PreparedImage{cv::Mat()}; }));
 }
 
 TEST_F(Localization, threads_share_a_localizer)
 {
-    const Localizer localizer(folder.path("map"));
     std::vector<cv::Mat> images;
     std::vector<Location> alone, atOnce(8);
     for (int i = 0; i < int(atOnce.size()); i++)
@@ -272,7 +250,6 @@ TEST_F(Localization, threads_share_a_localizer)
 
 TEST_F(Localization, a_prior_gates_and_is_not_needed)
 {
-    const Localizer localizer(folder.path("map"));
     const cv::Affine3d prior = inverse(poseAt(0.15, -0.05, 0.1)),
                        away = inverse(poseAt(0.1, -0.1, 0.1 + CV_PI));
     const cv::Mat image = wall.image(TRUTH);
@@ -287,7 +264,6 @@ TEST_F(Localization, a_prior_gates_and_is_not_needed)
 
 TEST_F(Localization, an_unknown_place_and_empty_images_get_no_pose)
 {
-    const Localizer localizer(folder.path("map"));
     for (uint64 seed = 2; seed < 7; seed++)
         EXPECT_FALSE(localizer.localize(Wall(seed).image(poseAt(0, 0, 0)), CAMERA).found);
     EXPECT_EQ("too few matches", localizer.localize(cv::Mat(SIZE, CV_8U, cv::Scalar(7)), CAMERA).reason);

@@ -220,10 +220,10 @@ TEST(Pose, derivatives_are_those_of_finite_differences)
             places.insert(places.end(), {-m.error[0], -m.error[1]});
         return places;
     };
-    cv::Mat_<double> told;
+    cv::Mat_<double> analytic;
     for (const LinearMatch& m : linearize(matches, lens, pose))
-        told.push_back(cv::Mat(m.byPose));
-    expectDerivatives(told, seenAt, 1e-6);
+        analytic.push_back(cv::Mat(m.byPose));
+    expectDerivatives(analytic, seenAt, 1e-6);
 }
 
 TEST(Pose, refined_to_the_truth_among_wrong_matches)

@@ -65,7 +65,7 @@ Mat seenAgain(RNG& random, const Mat& pixels, const Matx33d& K1, const Matx33d& 
     return seen;
 }
 
-// What is asked of wrong matches below can be told of right ones at the same places.
+// Counterparts of the wrong matches below.
 TEST(Verdict, right_matches_of_a_skyline_a_small_image_and_a_wide_scale_have_one)
 {
     const Matx33d small(80, 0, 40, 0, 80, 30, 0, 0, 1), large(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
