@@ -31,7 +31,7 @@ struct Detector
     //! From an 8-bit grey image and the name of its file.
     std::function<Detection(const cv::Mat&, const std::string&)> detect;
     std::vector<Configuration> others;  //!< of other makers, described at the same points
-    std::string folder;                 //!< of lists of keypoints, one an image; empty: it looks at the image
+    std::string folder;                 //!< of lists of keypoints, one per image; empty: detects in the image
     std::vector<std::string> only;      //!< what its points are described by; empty: by all
 
     //! Whether it has keypoints of the image of this file.

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Which rows count where, how sure means are, what is said of speed and of localization; needs pandas."""
+"""Tests groups of rows, intervals, and figures of speed and localization; needs pandas."""
 import pathlib
 import sys
 import tempfile
@@ -87,7 +87,7 @@ class Figures(unittest.TestCase):
     def test_a_detector_that_nobody_placed_is_drawn(self):
         row = {'milliseconds': '9', 'at_5': '.5', 'low': '.4', 'high': '.6'}
         with unittest.mock.patch.object(tables, 'poses_by_time', lambda: {('new one', points, 'm'): {'plain': row, 'refined': row} for points in (9, 8)}):
-            self.assertIn('<!-- 8, 9 -->', charts.cost())  # as matplotlib tells the text of a line
+            self.assertIn('<!-- 8, 9 -->', charts.cost())  # the text of a line in matplotlib's SVG
 
     def test_intervals(self):
         self.assertEqual(summaries.interval([[.5]] * 9), [.5, .5])
@@ -193,7 +193,7 @@ class Figures(unittest.TestCase):
             self.assertEqual(runs(heads, 'b', '2002-02-02'), ['comparison.csv,a,2001-01-01,on a', other])  # nothing was measured
             self.assertEqual(runs(heads + 'r,t,ORB,ORB,1,1,1,1,1\n', 'a;c', '2003-03-03'), ['comparison.csv,a;c,2003-03-03,on a;c', other])
 
-    def test_no_error_is_told_where_nothing_was_found(self):
+    def test_without_poses_there_is_no_error(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder, 'setups.csv')
             file.write_text('map,setup,light,images,found,within_5,lateral,longitudinal,altitude,orientation\n'
