@@ -44,7 +44,7 @@ if(TARGET iib_demo AND IIB_PYTHON)
 endif()
 
 if(IIB_SANITIZE)
-  return()  # what follows compiles, times or looks at symbols, and shows nothing more in an instrumented build
+  return()  # an instrumented build adds nothing to tests of headers, times and symbols
 endif()
 
 add_test(NAME perf-smoke COMMAND opencv_perf_iib --perf_min_samples=1 --perf_force_samples=1)

@@ -3,7 +3,7 @@
 #
 # OpenCV's installed cv_cpu_dispatch.h and cv_cpu_helper.h hold all the macros (CV_CPU_DISPATCH,
 # CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN, CV_AVX2, ...), active when __OPENCV_BUILD is defined and
-# cv_cpu_config.h says what the compiler was told. The sets below are OpenCVCompilerOptimizations.cmake's.
+# cv_cpu_config.h has the compiler's instruction sets. The sets below are OpenCVCompilerOptimizations.cmake's.
 include(CheckCXXCompilerFlag)
 
 set(IIB_BASELINE "")
@@ -26,7 +26,7 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID
       string(APPEND IIB_${isa}_FLAGS " -Wa,-muse-unaligned-vector-move")
     endforeach()
   endif()
-  if(MSVC)  # whose intrinsics need no flag: it tells what the compiler may use by itself
+  if(MSVC)  # its intrinsics need no flag; the flag lets the compiler use these instructions by itself
     set(IIB_SSE4_2_FLAGS "")
     set(IIB_AVX2_FLAGS /arch:AVX2)
     set(IIB_AVX512_SKX_FLAGS /arch:AVX512)

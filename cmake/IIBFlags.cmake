@@ -31,8 +31,8 @@ if(IIB_SANITIZE)
   list(APPEND IIB_FLAGS -fsanitize=${argument} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${argument})
 endif()
-# For kernels and tests, which take GCC longest: the cheapest flags that find every access out of bounds. What else is
-# undefined in kernels, and what is used after its scope, scripts/fuzz.sh looks for, with clang and all flags. Checks by
+# For kernels and tests, which GCC compiles slowest: the cheapest flags that find every access out of bounds. scripts/fuzz.sh
+# finds other undefined behaviour and uses after a scope, with clang and all flags. Checks by
 # calls (asan-instrumentation-with-call-threshold=0) would keep so many masks of AVX-512 in memory that GCC 12 trips over
 # them: it stores one byte of a mask (kmovb) and reads four back.
 set(IIB_ADDRESS_ALONE "")

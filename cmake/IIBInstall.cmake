@@ -39,7 +39,7 @@ if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
   set(pc_rpath "")
 endif()
 math(EXPR next_minor "${OpenCV_VERSION_MINOR} + 1")
-# The prefix is told from the file's own place, so that `cmake --install --prefix` may choose it.
+# The prefix follows from the file's own path, so that `cmake --install --prefix` may choose it.
 set(pc_dir "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 file(RELATIVE_PATH pc_to_prefix "/prefix/${pc_dir}" "/prefix")
 configure_file(cmake/opencv_iib.pc.in opencv_iib.pc @ONLY)

@@ -18,7 +18,7 @@ while :; do
 done
 [ "$nonfree$contrib" != ON ] || fail "--nonfree needs --contrib"
 check_options "$root/tools/evaluation/main.cpp" "$@"
-[ $# != 0 ] || fail "a folder of DATA is needed (--help tells more)"
+[ $# != 0 ] || fail "a folder of DATA is needed (see --help)"
 out="$root/results"
 previous=""
 for argument in "$@"; do

@@ -18,7 +18,7 @@ case "${1:-}" in
     ;;
 esac
 check_options "$root/tools/training/train.cpp" "$@"
-[ $# != 0 ] || fail "a FOLDER to train on is needed (--help tells more)"
+[ $# != 0 ] || fail "a FOLDER to train on is needed (see --help)"
 need $build_packages
 build_tools iib_train
 exec "$build/tools/training/iib_train" "$@"

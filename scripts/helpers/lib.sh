@@ -49,7 +49,7 @@ check_definitions() {
     for argument in "$@"; do
         case "$argument" in
         -D?*) ;;
-        *) fail "$argument is not -DNAME=VALUE for CMake (--help tells more)" ;;
+        *) fail "$argument is not -DNAME=VALUE for CMake (see --help)" ;;
         esac
     done
 }

@@ -3,7 +3,7 @@
 # scripts/helpers/synthetic.sh FOLDER [--frames N] [--scenes SCENE...] [--size W H] [--jobs N]
 . "$(dirname "$0")/lib.sh"
 
-[ $# -gt 0 ] || fail "a FOLDER is needed (--help tells more)"
+[ $# -gt 0 ] || fail "a FOLDER is needed (see --help)"
 for argument in "$@"; do
     case "$argument" in
     --*)

@@ -152,8 +152,8 @@ LoadedPair loadPair(const ImagePair& pair)
     LoadedPair loaded;
     loaded.homography =
             pair.homographyFile.empty() ? cv::Matx33d::eye() : readHomography(pair.homographyFile);
-    loaded.reference = readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE);
-    loaded.target = readImage(pair.targetFile, cv::IMREAD_GRAYSCALE);
+    loaded.reference = readImage(pair.referenceFile);
+    loaded.target = readImage(pair.targetFile);
     for (const std::string& name : pair.extraNames)
     {
         loaded.referenceExtra[name] = readExtra(pair.referenceFile, name, loaded.reference.size());

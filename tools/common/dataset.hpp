@@ -28,6 +28,7 @@ struct ImagePair
     std::vector<std::string> extraNames;
 
     std::string name() const;  //!< "set/sequence/target", unique in a data set
+    std::vector<std::string> key() const { return {set, sequence, target}; }  //!< of rows of results
 };
 
 struct LoadedPair
@@ -64,7 +65,7 @@ LoadedPair loadPair(const ImagePair& pair);
 //! Reads nine finite numbers, row by row. @throws cv::Exception for anything else, and for a singular matrix.
 cv::Matx33d readHomography(const std::string& file);
 
-//! @param flags as in cv::imread. @throws cv::Exception if the image cannot be read.
-cv::Mat readImage(const std::string& file, int flags);
+//! Reads a grey image, or by other flags of cv::imread. @throws cv::Exception if the image cannot be read.
+cv::Mat readImage(const std::string& file, int flags = 0);
 
 }  // namespace iib_tools

@@ -45,6 +45,9 @@ struct ViewPair
     cv::Vec3d translation;                      //!< likewise; methods under test do not know its length
     bool sameLight;                             //!< whether both images are of one folder
     int referenceTurns, targetTurns;            //!< clockwise quarter turns at which the images were taken
+
+    std::string name() const { return set + "/" + sequence + "/" + target; }
+    std::vector<std::string> key() const { return {set, sequence, target}; }  //!< of rows of results
 };
 
 //! Whether a folder holds `cameras.txt`, `poses.txt` and `images`.

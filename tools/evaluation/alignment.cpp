@@ -10,12 +10,12 @@
 namespace iib_tools {
 namespace {
 
-const int OTHER_SCENES = 520;    // pairs of images of different sets, in all
-const int WITH_LOGO = 36;        // of them, that are given a part in common
-const int LOGO = 100;            // pixels of its sides
-const double MOST_MOVED = 0.06;  // of a corner, in parts of the image's size
+const int OTHER_SCENES = 520;    // pairs of images of different sets
+const int WITH_LOGO = 36;        // of these pairs, those that also get a common part
+const int LOGO = 100;            // side of the common part, pixels
+const double MOST_MOVED = 0.06;  // of a corner, as a share of the image's size
 const double NOISE = 8;          // grey levels
-const cv::Point SHIFT(17, -9);   // whole pixels, by which noisy images are moved
+const cv::Point SHIFT(17, -9);   // pixels between noisy images
 const char* const MODELS[] = {"TRANSLATION", "SIMILARITY", "AFFINE", "HOMOGRAPHY"};
 
 std::vector<cv::Point2d> corners(const cv::Size& size)
@@ -30,7 +30,7 @@ bool stoodStill(const ImagePair& pair)
            cv::norm(readHomography(pair.homographyFile), cv::Matx33d::eye(), cv::NORM_INF) == 0;
 }
 
-//! Of a model, by which corners move so far at most.
+//! A random transform of a model that moves corners by MOST_MOVED at most.
 cv::Matx33d randomTransform(cv::RNG& random, const cv::Size& size, int model)
 {
     std::vector<cv::Point2f> from, to;
@@ -58,9 +58,9 @@ cv::Matx33d randomTransform(cv::RNG& random, const cv::Size& size, int model)
     return all;
 }
 
-/** Of the corners of the image: how far they lie from their true places in the reference on average, in pixels, and the mean of
-(error / told deviation)^2. */
-Fields errorsOf(const cv::Mat& found, const cv::Mat& told, const cv::Matx33d& truth, const cv::Size& size)
+//! Mean error of the image's corners in the reference, pixels, and mean of (error / estimated deviation)^2.
+Fields errorsOf(
+        const cv::Mat& found, const cv::Mat& deviations, const cv::Matx33d& truth, const cv::Size& size)
 {
     std::vector<cv::Point2d> places, trueOnes;
     cv::perspectiveTransform(corners(size), places, found);
@@ -70,36 +70,28 @@ Fields errorsOf(const cv::Mat& found, const cv::Mat& told, const cv::Matx33d& tr
     {
         const double error = cv::norm(places[k] - trueOnes[k]);
         sum += error;
-        squares += std::pow(error / told.at<double>(k), 2);
+        squares += std::pow(error / deviations.at<double>(k), 2);
     }
     return {text(sum / 4), text(squares / 4)};
 }
 
-//! Rows of the table for two images, one for each model. @param truth null: none.
+//! Appends a row for each model. @param truth null if the images show different scenes
 void alignAll(const cv::Mat& reference, const cv::Mat& image, const Fields& key, const cv::Matx33d* truth,
         ResultTable& table)
 {
     for (int model = cv::iib::ALIGN_TRANSLATION; model <= cv::iib::ALIGN_HOMOGRAPHY; model++)
     {
-        cv::Mat transform, told, matches;
-        const bool found = cv::iib::alignImages(reference, image, transform, model, told, matches);
-        Fields row = key;
-        row.insert(row.end(), {MODELS[model], std::to_string(found), std::to_string(matches.rows)});
-        const Fields errors = found && truth ? errorsOf(transform, told, *truth, image.size())
+        cv::Mat transform, deviations, matches;
+        const int found = cv::iib::alignImages(reference, image, transform, model, deviations, matches);
+        const Fields errors = found && truth ? errorsOf(transform, deviations, *truth, image.size())
                                              : Fields{truth ? "inf" : "", ""};
-        row.insert(row.end(), errors.begin(), errors.end());
-        table.append(row);
+        table.append(with(key, MODELS[model], found, matches.rows, errors[0], errors[1]));
     }
-}
-
-Fields keyOf(const ImagePair& pair, const std::string& image)
-{
-    return {pair.set, pair.sequence, pair.target, image};
 }
 
 std::string movedBy(int model) { return std::string("moved by a ") + MODELS[model]; }
 
-//! Under changed light, the second image moved by a transform.
+//! Aligns a pair whose second image was moved by a transform.
 void alignMoved(const ImagePair& pair, int by, uint64 seed, ResultTable& table)
 {
     const LoadedPair loaded = loadPair(pair);
@@ -109,10 +101,10 @@ void alignMoved(const ImagePair& pair, int by, uint64 seed, ResultTable& table)
     cv::warpPerspective(
             loaded.target, image, moved, loaded.target.size(), cv::INTER_CUBIC, cv::BORDER_REFLECT);
     const cv::Matx33d truth = (moved * loaded.homography).inv();
-    alignAll(loaded.reference, image, keyOf(pair, movedBy(by)), &truth, table);
+    alignAll(loaded.reference, image, with(pair.key(), movedBy(by)), &truth, table);
 }
 
-//! Two parts of one image, by whole pixels apart, each with noise of its own.
+//! Aligns two parts of one image, SHIFT apart, each with its own noise.
 void alignNoisy(const ImagePair& pair, uint64 seed, ResultTable& table)
 {
     const cv::Mat whole = loadPair(pair).reference;
@@ -127,15 +119,16 @@ void alignNoisy(const ImagePair& pair, uint64 seed, ResultTable& table)
         cv::add(whole(i ? part + SHIFT : part), noise, images[i], cv::noArray(), CV_8U);
     }
     const cv::Matx33d truth(1, 0, SHIFT.x, 0, 1, SHIFT.y, 0, 0, 1);
-    alignAll(images[0], images[1], keyOf(pair, "with noise"), &truth, table);
+    alignAll(images[0], images[1], with(pair.key(), "with noise"), &truth, table);
 }
 
 void alignOthers(const ImagePair& pair, const ImagePair& other, ResultTable& table)
 {
-    alignAll(loadPair(pair).reference, loadPair(other).target, keyOf(pair, other.name()), nullptr, table);
+    alignAll(
+            loadPair(pair).reference, loadPair(other).target, with(pair.key(), other.name()), nullptr, table);
 }
 
-//! Both with a part of a third image in the upper left corner.
+//! Aligns images of different scenes with a part of a third image in both upper left corners.
 void alignLogos(const ImagePair& pair, const ImagePair& other, const ImagePair& logo, ResultTable& table)
 {
     cv::Mat images[] = {loadPair(pair).reference, loadPair(other).target};
@@ -143,7 +136,7 @@ void alignLogos(const ImagePair& pair, const ImagePair& other, const ImagePair& 
     const cv::Rect middle((third.cols - LOGO) / 2, (third.rows - LOGO) / 2, LOGO, LOGO);
     for (cv::Mat& image : images)
         third(middle).copyTo(image(cv::Rect(20, 20, LOGO, LOGO)));
-    alignAll(images[0], images[1], keyOf(pair, "logo " + other.name()), nullptr, table);
+    alignAll(images[0], images[1], with(pair.key(), "logo " + other.name()), nullptr, table);
 }
 
 }  // namespace
@@ -154,14 +147,12 @@ int alignment(const Options& options, const std::vector<ImagePair>& all)
     for (const ImagePair& pair : all)
         if (pair.kind == "light")
             pairs.push_back(pair);
-    ResultTable table(options.out + "/alignment.csv",
+    Experiment experiment(options.out, "alignment",
             {"set", "sequence", "target", "image", "model", "found", "matches", "error", "squares"}, 5);
-    std::vector<Task> tasks;
+    ResultTable& table = experiment.table;
     const auto plan = [&](const ImagePair& pair, const std::string& image, const std::function<void()>& run) {
-        Fields last = keyOf(pair, image);
-        last.push_back(MODELS[cv::iib::ALIGN_HOMOGRAPHY]);
-        if (!table.has(last))
-            tasks.push_back({pair.name() + " and " + image, run});
+        experiment.plan(with(pair.key(), image, MODELS[cv::iib::ALIGN_HOMOGRAPHY]),
+                pair.name() + " and " + image, run);
     };
     for (size_t i = 0; i < pairs.size(); i++)
     {
@@ -184,7 +175,7 @@ int alignment(const Options& options, const std::vector<ImagePair>& all)
         if (others.size() <= WITH_LOGO)
             plan(pair, "logo " + other.name(), [&] { alignLogos(pair, other, third, table); });
     }
-    return runTasks("alignment", tasks, &table);
+    return experiment.run();
 }
 
 }  // namespace iib_tools

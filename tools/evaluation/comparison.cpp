@@ -14,19 +14,8 @@
 namespace iib_tools {
 namespace {
 
-void writePicture(const std::string& file, const cv::Mat& picture)
-{
-    if (!cv::imwrite(file, picture, {cv::IMWRITE_JPEG_QUALITY, 75}))
-        CV_Error(cv::Error::StsError, file + ": cannot be written");
-}
-
-//! Points of a detector, and what describes them.
-struct Method
-{
-    std::string detector, descriptor;
-};
-
-//! Those of the paper's figures, and the recommended chain.
+//! Detectors and descriptors of the paper's figures, and of the recommended chain.
+typedef std::pair<const char*, const char*> Method;
 const Method METHODS[] = {{"Hessian", "IIB UNIVERSAL"}, {"AKAZE", "IIB"}, {"AKAZE", "AKAZE"}, {"ORB", "ORB"},
         {"ORB", "BEBLID-512"}, {"BRISK", "BRISK"}, {"SIFT", "SIFT"}};
 
@@ -40,18 +29,18 @@ void listMatches(const Options& options, const ImagePair& pair, const Detector& 
     {
         const Described &r = reference[i], &t = target[i];
         if (std::none_of(std::begin(METHODS), std::end(METHODS),
-                    [&](const Method& m) { return m.detector == detector.name && m.descriptor == r.name; }))
+                    [&](const Method& m) { return m.first == detector.name && m.second == r.name; }))
             continue;
         const std::vector<cv::DMatch> matches = mutualMatches(r.descriptors, t.descriptors, r.norm);
         const std::vector<bool> correct =
                 correctByLocation(matches, r.keypoints, t.keypoints, loaded.homography, options.tolerance);
         for (size_t m = 0; m < matches.size(); m++)
         {
-            const cv::Point2f a = r.keypoints[matches[m].queryIdx].pt,
-                              b = t.keypoints[matches[m].trainIdx].pt;
-            table.append({stem(pair.referenceFile), stem(pair.targetFile), detector.name, r.name,
-                    cv::format("%.1f", a.x), cv::format("%.1f", a.y), cv::format("%.1f", b.x),
-                    cv::format("%.1f", b.y), correct[m] ? "1" : "0"});
+            Fields row = {stem(pair.referenceFile), stem(pair.targetFile), detector.name, r.name};
+            for (const cv::Point2f& p :
+                    {r.keypoints[matches[m].queryIdx].pt, t.keypoints[matches[m].trainIdx].pt})
+                row = with(row, cv::format("%.1f", p.x), cv::format("%.1f", p.y));
+            table.append(with(row, int(correct[m])));
         }
     }
 }
@@ -63,15 +52,13 @@ int comparison(const Options& options, const std::vector<ImagePair>&)
     if (options.compare.empty())
         return 0;
     cv::utils::fs::createDirectories(options.out + "/pictures");
-    const std::string file = options.out + "/comparison.csv";
-    std::remove(file.c_str());
-    ResultTable table(file,
+    std::remove((options.out + "/comparison.csv").c_str());
+    Experiment experiment(options.out, "comparison",
             {"reference", "target", "detector", "descriptor", "x", "y", "target_x", "target_y", "correct"},
             8);
     Options classic = options;
     classic.detectors = {"Hessian", "AKAZE", "ORB", "BRISK", "SIFT"};
     classic.keypoints.clear();
-    std::vector<Task> tasks;
     for (size_t i = 0; i + 1 < options.compare.size(); i += 2)
     {
         ImagePair pair;
@@ -83,13 +70,16 @@ int comparison(const Options& options, const std::vector<ImagePair>&)
         if (cv::utils::fs::exists(homography))
             pair.homographyFile = homography;
         for (const std::string& image : {pair.referenceFile, pair.targetFile})
-            writePicture(
-                    options.out + "/pictures/" + stem(image) + ".jpg", readImage(image, cv::IMREAD_COLOR));
+        {
+            const std::string file = options.out + "/pictures/" + stem(image) + ".jpg";
+            if (!cv::imwrite(file, readImage(image, cv::IMREAD_COLOR), {cv::IMWRITE_JPEG_QUALITY, 75}))
+                CV_Error(cv::Error::StsError, file + ": cannot be written");
+        }
         for (const Detector& detector : detectors(classic))
-            tasks.push_back({stem(target) + " " + detector.name,
-                    [&, pair, detector] { listMatches(options, pair, detector, table); }});
+            experiment.plan({}, stem(target) + " " + detector.name,
+                    [&, pair, detector] { listMatches(options, pair, detector, experiment.table); });
     }
-    return runTasks("comparison", tasks, &table);
+    return experiment.run();
 }
 
 }  // namespace iib_tools

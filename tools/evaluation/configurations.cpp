@@ -4,11 +4,20 @@
 
 #include "common/dataset.hpp"
 #include "opencv2/iib.hpp"
+#include "opencv2/opencv_modules.hpp"
+#if defined(HAVE_OPENCV_XFEATURES2D) || defined(IIB_WITH_CONTRIB)
+#define IIB_HAVE_XFEATURES2D
+#include "opencv2/xfeatures2d.hpp"
+#ifdef IIB_WITH_SURF
+#include "opencv2/xfeatures2d/nonfree.hpp"
+#endif
+#endif
 
 namespace iib_tools {
 namespace {
 
 using cv::iib::IIB;
+typedef cv::Ptr<cv::Feature2D> Feature;
 
 //! IIB with the paper's parameters but for some, on FAST corners.
 Configuration iib(const std::string& name, int granularity = 4, int channels = IIB::CHANNELS_DEFAULT,
@@ -16,7 +25,7 @@ Configuration iib(const std::string& name, int granularity = 4, int channels = I
         const std::vector<std::string>& extraNames = std::vector<std::string>())
 {
     const int extras = int(extraNames.size());
-    const auto create = [=]() -> cv::Ptr<cv::Feature2D> {
+    const auto create = [=]() -> Feature {
         return IIB::create(1.f, granularity, channels, mapping, overlap, oriented, extras);
     };
     return {name, create, 2 * SEED_RADIUS, "FAST", extraNames, oriented};
@@ -25,9 +34,66 @@ Configuration iib(const std::string& name, int granularity = 4, int channels = I
 Configuration withPreset(const std::string& name, int preset)
 {
     Configuration c = iib("IIB " + name);
-    c.create = [preset]() -> cv::Ptr<cv::Feature2D> { return IIB::createPreset(preset, 1.f); };
+    c.create = [preset]() -> Feature { return IIB::createPreset(preset, 1.f); };
     return c;
 }
+
+Configuration baseline(const std::string& name, float seedSize, const std::function<Feature()>& create,
+        const std::string& seeds = "FAST")
+{
+    return {name, create, seedSize, seeds, {}, false};
+}
+
+Configuration akaze(int bits)
+{
+    return baseline(
+            "AKAZE-" + std::to_string(bits ? bits : 486), 0,
+            [bits]() -> Feature { return cv::AKAZE::create(cv::AKAZE::DESCRIPTOR_MLDB_UPRIGHT, bits); },
+            "AKAZE");
+}
+
+#ifdef IIB_HAVE_XFEATURES2D
+//! As OpenCV's documentation recommends for corners: five times their size, 35 pixels.
+const float CORNER_SIZE = 7, CORNER_SCALE = 5;
+
+template <class T>
+void addBeblid(const std::string& name, int bits, int size, std::vector<Configuration>& baselines)
+{
+    const std::string full = name + "-" + std::to_string(bits);
+    baselines.push_back(
+            baseline(full, 2 * SEED_RADIUS, [size]() -> Feature { return T::create(1.f, size); }));
+    baselines.push_back(baseline(
+            full + " 5x", CORNER_SIZE, [size]() -> Feature { return T::create(CORNER_SCALE, size); }));
+}
+
+void addXfeatures2d(std::vector<Configuration>& baselines)
+{
+    using namespace cv::xfeatures2d;
+    const float side = 2 * SEED_RADIUS;
+    for (int bytes : {16, 32, 64})
+    {
+        baselines.push_back(baseline("BRIEF-" + std::to_string(8 * bytes), side,
+                [bytes]() -> Feature { return BriefDescriptorExtractor::create(bytes); }));
+        baselines.push_back(baseline("LATCH-" + std::to_string(8 * bytes), side,
+                [bytes]() -> Feature { return LATCH::create(bytes, false); }));
+    }
+    // A pattern of 22 px about keypoints of size 7.
+    baselines.push_back(
+            baseline("FREAK", 7 * SEED_RADIUS / 22, []() -> Feature { return FREAK::create(false); }));
+    addBeblid<BEBLID>("BEBLID", 256, BEBLID::SIZE_256_BITS, baselines);
+    addBeblid<BEBLID>("BEBLID", 512, BEBLID::SIZE_512_BITS, baselines);
+#if defined(IIB_WITH_CONTRIB) || CV_VERSION_MAJOR * 100 + CV_VERSION_MINOR >= 407
+    addBeblid<TEBLID>("TEBLID", 256, TEBLID::SIZE_256_BITS, baselines);
+    addBeblid<TEBLID>("TEBLID", 512, TEBLID::SIZE_512_BITS, baselines);
+#endif
+#ifdef IIB_WITH_SURF
+    // The window is 20 times 1.2 / 9 of the size.
+    baselines.push_back(baseline(
+            "SURF", side * 9 / 24, []() -> Feature { return SURF::create(100, 4, 3, false, true); }));
+#endif
+    baselines.push_back(baseline("DAISY", side, []() -> Feature { return DAISY::create(SEED_RADIUS); }));
+}
+#endif
 
 }  // namespace
 
@@ -95,7 +161,7 @@ std::vector<Configuration> robustnessConfigurations()
 Configuration savedConfiguration(const std::string& file)
 {
     Configuration c = iib("IIB " + stem(file));
-    c.create = [file]() -> cv::Ptr<cv::Feature2D> {
+    c.create = [file]() -> Feature {
         cv::Ptr<IIB> extractor = IIB::create();
         const cv::FileStorage storage(file, cv::FileStorage::READ);
         if (!storage.isOpened())
@@ -110,6 +176,23 @@ Configuration savedConfiguration(const std::string& file)
 int descriptorBytes(const cv::Feature2D& feature)
 {
     return feature.descriptorSize() * int(CV_ELEM_SIZE1(feature.descriptorType()));
+}
+
+std::vector<Configuration> baselineConfigurations()
+{
+    std::vector<Configuration> all = {// Its patch is 31 px whatever the size.
+            baseline("ORB", 31, []() -> Feature { return cv::ORB::create(); }),
+            // A pattern of 9.2 px about keypoints of size 7.2.
+            baseline("BRISK", SEED_RADIUS * 7.2f / 9.2f, []() -> Feature { return cv::BRISK::create(); }),
+            // Four bins of 1.5 sizes each.
+            baseline("SIFT", 2 * SEED_RADIUS / 6, []() -> Feature { return cv::SIFT::create(); }), akaze(128),
+            akaze(256), akaze(0),
+            baseline(
+                    "KAZE", 0, []() -> Feature { return cv::KAZE::create(false, true); }, "KAZE")};
+#ifdef IIB_HAVE_XFEATURES2D
+    addXfeatures2d(all);
+#endif
+    return all;
 }
 
 }  // namespace iib_tools

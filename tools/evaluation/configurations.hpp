@@ -18,7 +18,7 @@ struct Configuration
 {
     std::string name;
     std::function<cv::Ptr<cv::Feature2D>()> create;
-    float seedSize;     //!< KeyPoint::size at which it looks at the ROS of radius SEED_RADIUS
+    float seedSize;     //!< KeyPoint::size for a ROS of radius SEED_RADIUS
     std::string seeds;  //!< detector of the seed points: "FAST", or "AKAZE", "KAZE" that need their own
     std::vector<std::string> extraNames;  //!< maps it is given besides the image
     bool oriented;                        //!< whether keypoints get an angle (robustness only)

@@ -5,7 +5,7 @@
 
 #include "common/dataset.hpp"
 #include "common/views.hpp"
-#include "described_images.hpp"
+#include "detectors.hpp"
 #include "experiments.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
@@ -16,16 +16,15 @@ namespace iib_tools {
 namespace {
 
 const float RATIOS[] = {.8f, .85f, .9f, .92f, .95f};
-const int POINTS[] = {500, 1000, 2000};  // that neighbours are counted of
+const int POINTS[] = {500, 1000, 2000};  // an image, where neighbours are counted
 const double NOISE = 14;                 // grey levels, of the second image
 const double CLIP = 2;                   // of CLAHE, OpenCV's tutorials' choice
 const double DEPTH_STEP = .004;          // metres; tools/synthetic/common.inc
-const double DEPTH_TOLERANCE = .02;      // parts of the depth
+const double DEPTH_TOLERANCE = .02;      // share of the depth
 const double SIFT_SIGMA = 1.6;           // of SIFT's first level, pixels
 const int SIFT_LAYERS = 3, BLOCK = 16;
 
-/** SIFT's descriptor at another detector's points. SIFT reads the level of its pyramid from the keypoint, which these do not have: it is that
-of their size. */
+/** SIFT's descriptor at another detector's points. SIFT reads a level of its pyramid from a keypoint; here the size decides it. */
 class SiftAt : public cv::Feature2D
 {
 public:
@@ -47,7 +46,7 @@ public:
     int defaultNorm() const CV_OVERRIDE { return cv::NORM_L2; }
 };
 
-//! RootSIFT (Arandjelovic and Zisserman, CVPR 2012): the square roots of the parts of each descriptor's sum.
+//! RootSIFT (Arandjelovic and Zisserman, CVPR 2012): square roots of the descriptor divided by its sum.
 Described rooted(Described sift)
 {
     sift.name = "RootSIFT";
@@ -64,8 +63,8 @@ Described rooted(Described sift)
 enum Which
 {
     ALL,
-    COUNTED,  // those whose neighbours are counted for other numbers of points, too
-    NOISY     // those that noise is added for
+    COUNTED,  // neighbours are counted for other numbers of points, too
+    NOISY     // poses are found with noise, too
 };
 
 //! Each detector with the descriptors that are compared at its points.
@@ -133,8 +132,8 @@ struct Neighbours
     int visible, repeated, nearest;
 };
 
-/** Of one image's points, by the known depths: those that the other image shows, those of them that were detected there, too, and those whose
-nearest descriptor is there. */
+/** Counts, by the known depths, the points of an image that the other image shows, those that were also detected there, and those
+whose nearest descriptor is there. */
 Neighbours neighboursOf(const ViewPair& pair, const Described& r, const Described& t, const cv::Mat& depth,
         const cv::Mat& targetDepth, double tolerance)
 {
@@ -176,20 +175,15 @@ cv::Mat withNoise(const cv::Mat& image, double sigma)
 int controls(const Options& options, const std::vector<ImagePair>&)
 {
     const Fields names = {"set", "sequence", "target", "detector", "descriptor"};
-    Fields poseColumns = names, neighbourColumns = names;
-    poseColumns.insert(poseColumns.end(), {"noise", "ratio", "error", "matches"});
-    neighbourColumns.insert(
-            neighbourColumns.end(), {"points", "baseline", "contrast", "visible", "repeated", "nearest"});
-    ResultTable poses(options.out + "/controls.csv", poseColumns, 7),
-            neighbours(options.out + "/neighbours.csv", neighbourColumns, 6);
+    Experiment experiment(options.out, "controls", with(names, "noise", "ratio", "error", "matches"), 7);
+    ResultTable neighbours(options.out + "/neighbours.csv",
+            with(names, "points", "baseline", "contrast", "visible", "repeated", "nearest"), 6);
     DescribedImages described;
-    std::vector<Task> tasks;
     const std::string last[] = {"SIFT CLAHE", "SIFT"};
     for (const ViewPair& pair : findViewPairs(options.roots))
     {
         const auto run = [&, pair] {
-            const cv::Mat reference = readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE),
-                          target = readImage(pair.targetFile, cv::IMREAD_GRAYSCALE),
+            const cv::Mat reference = readImage(pair.referenceFile), target = readImage(pair.targetFile),
                           depth = depthOf(pair.referenceFile), targetDepth = depthOf(pair.targetFile);
             const auto eachMethod = [&](const cv::Mat& other, double noise, int points, Which which,
                                             const std::function<void(const Fields&, const Described&,
@@ -203,36 +197,30 @@ int controls(const Options& options, const std::vector<ImagePair>&)
                     for (size_t i = 0; i < r->size(); i++)
                     {
                         const Described &from = (*r)[i], &to = (*t)[i];
-                        Fields key = {pair.set, pair.sequence, pair.target, detector.name, from.name};
-                        use(key, from, to);
-                        key.back() = "RootSIFT";
+                        const Fields key = with(pair.key(), detector.name);
+                        use(with(key, from.name), from, to);
                         if (which == ALL && from.name == "SIFT" && detector.name != last[0])
-                            use(key, rooted(from), rooted(to));
+                            use(with(key, "RootSIFT"), rooted(from), rooted(to));
                     }
                 }
             };
-            const auto findPoses = [&](const cv::Mat& other, double noise, Fields key, const Described& from,
-                                           const Described& to) {
+            const auto findPoses = [&](const cv::Mat& other, double noise, const Fields& key,
+                                           const Described& from, const Described& to) {
                 std::vector<float> ratios;
                 const std::vector<cv::DMatch> matches = mutualMatches(from, to, ratios);
                 for (float ratio : RATIOS)
                 {
                     const Points points =
                             refined(reference, other, underRatio(matches, ratios, ratio), from, to, true);
-                    Fields row = key;
-                    row.insert(row.end(),
-                            {text(noise), text(ratio), text(byFindRelativePose(points, pair).error),
-                                    std::to_string(points.reference.size())});
-                    poses.append(row);
+                    experiment.table.append(with(key, noise, ratio, byFindRelativePose(points, pair).error,
+                            points.reference.size()));
                 }
             };
-            const auto countNeighbours = [&](int points, Fields row, const Described& from,
+            const auto countNeighbours = [&](int points, const Fields& key, const Described& from,
                                                  const Described& to) {
                 const Neighbours n = neighboursOf(pair, from, to, depth, targetDepth, options.tolerance);
-                row.insert(row.end(), {std::to_string(points), text(cv::norm(pair.translation)),
-                                              text(contrastOf(target)), std::to_string(n.visible),
-                                              std::to_string(n.repeated), std::to_string(n.nearest)});
-                neighbours.append(row);
+                neighbours.append(with(key, points, cv::norm(pair.translation), contrastOf(target), n.visible,
+                        n.repeated, n.nearest));
             };
             const bool known = !depth.empty() && !targetDepth.empty();
             for (int points : POINTS)
@@ -253,10 +241,9 @@ int controls(const Options& options, const std::vector<ImagePair>&)
                         findPoses(target, 0, key, from, to);
                     });
         };
-        if (!poses.has({pair.set, pair.sequence, pair.target, last[0], last[1], "0", text(.95f)}))
-            tasks.push_back({pair.set + "/" + pair.sequence + "/" + pair.target, run});
+        experiment.plan(with(pair.key(), last[0], last[1], 0, .95f), pair.name(), run);
     }
-    const int skipped = runTasks("controls", tasks, &poses);
+    const int skipped = experiment.run();
     neighbours.finish();
     return skipped;
 }

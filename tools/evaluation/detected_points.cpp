@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "described_images.hpp"
+#include "detectors.hpp"
 #include "experiments.hpp"
 #include "results.hpp"
 
@@ -11,7 +11,7 @@ namespace {
 
 const int THRESHOLDS = 32;
 
-//! A distance as of descriptors that have nothing to do with each other: half of the bits differ, or a right angle.
+//! The distance of unrelated descriptors: half of the bits differ, or a right angle.
 double unrelated(const Described& d)
 {
     if (d.norm == cv::NORM_HAMMING)
@@ -63,11 +63,8 @@ void evaluatePair(const Options& options, const ImagePair& pair, const std::vect
                 correct.push_back(correspond(r.keypoints[m.queryIdx], t.keypoints[m.trainIdx],
                         loaded.homography, options.tolerance));
             const Counts n = countsOf(correct, correspondences);
-            Fields row = withCounts({pair.set, pair.sequence, pair.target, detector.name, r.name, pair.kind,
-                                            std::to_string(r.bytes)},
-                    n);
-            row.push_back(curve(matches, correct, unrelated(r)));
-            table.append(row);
+            table.append(with(withCounts(with(pair.key(), detector.name, r.name, pair.kind, r.bytes), n),
+                    curve(matches, correct, unrelated(r))));
         }
     }
 }
@@ -77,24 +74,24 @@ void evaluatePair(const Options& options, const ImagePair& pair, const std::vect
 int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs)
 {
     const std::vector<Detector> all = detectors(options);
-    ResultTable table(options.out + "/detected_points.csv",
+    Experiment experiment(options.out, "detected_points",
             {"set", "sequence", "target", "detector", "descriptor", "kind", "bytes", "correct", "putative",
                     "correspondences", "precision", "recall", "curve"},
             5);
     DescribedImages described;
-    std::vector<Task> tasks;
     for (const ImagePair& pair : pairs)
     {
         std::vector<Detector> missing;
         for (const Detector& d : all)
             if (pair.kind == "light" && d.knows(pair.referenceFile) && d.knows(pair.targetFile) &&
-                    !table.has({pair.set, pair.sequence, pair.target, d.name, "IIB"}))  // written last
+                    !experiment.table.has(with(pair.key(), d.name, "IIB")))  // written last
                 missing.push_back(d);
         if (!missing.empty())
-            tasks.push_back({pair.name(),
-                    [&, pair, missing] { evaluatePair(options, pair, missing, described, table); }});
+            experiment.plan({}, pair.name(), [&, pair, missing] {
+                evaluatePair(options, pair, missing, described, experiment.table);
+            });
     }
-    return runTasks("detected points", tasks, &table);
+    return experiment.run();
 }
 
 }  // namespace iib_tools

@@ -6,7 +6,7 @@
 #include "common/metrics.hpp"
 #include "common/pair_list.hpp"
 #include "common/views.hpp"
-#include "described_images.hpp"
+#include "detectors.hpp"
 #include "experiments.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "pose_estimates.hpp"
@@ -64,7 +64,7 @@ std::vector<LitPair> withRelit(const std::vector<ViewPair>& pairs)
     return all;
 }
 
-//! The name of a file, by which DescribedImages knows it as it is described.
+//! The name under which DescribedImages keeps a rotated or relit image.
 std::string asTurned(const std::string& file, int turns, int light)
 {
     return cv::format("%s turned %d lit %d", file.c_str(), turns, light);
@@ -86,7 +86,7 @@ std::string numbers(const ViewPair& pair, const Points& points)
     return out;
 }
 
-//! What each detector's points are described by: its own descriptor, if it has one, and UNIVERSAL.
+//! The detectors, each with its own descriptor, if it has one, and with UNIVERSAL.
 std::vector<Detector> describedByTwo(Options options)
 {
     if (options.detectors.empty())
@@ -97,7 +97,7 @@ std::vector<Detector> describedByTwo(Options options)
     return all;
 }
 
-//! Of the lists, whose images are below the first root, or what the roots hold.
+//! Pairs of the lists, whose images are below the first root; without lists those of the roots.
 std::vector<ViewPair> viewPairs(const Options& options)
 {
     if (options.pairs.empty())
@@ -120,12 +120,8 @@ std::vector<ViewPair> viewPairs(const Options& options)
 int estimators(const Options& options, const std::vector<ImagePair>&)
 {
     const Fields key = {"set", "sequence", "target", "detector", "descriptor", "points"};
-    Fields columns = key;
-    columns.insert(columns.end(), {"estimator", "error", "inliers"});
-    ResultTable errors(options.out + "/estimators.csv", columns, 7);
-    columns = key;
-    columns.push_back("numbers");
-    ResultTable matched(options.out + "/matched_points.csv", columns, 6);
+    Experiment experiment(options.out, "estimators", with(key, "estimator", "error", "inliers"), 7);
+    ResultTable matched(options.out + "/matched_points.csv", with(key, "numbers"), 6);
 
     const auto judge = [&](const ViewPair& pair, const std::string& detector, const cv::Mat& reference,
                                const cv::Mat& target, const Described& r, const Described& t) {
@@ -135,36 +131,29 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
                 {"propagated", refined(reference, target, matches, r, t, true)}};
         for (const auto& kind : kinds)
         {
-            const Fields pairKey = {pair.set, pair.sequence, pair.target, detector, r.name, kind.first};
-            const auto tell = [&](const std::string& estimator, const Outcome& outcome) {
-                Fields row = pairKey;
-                row.insert(row.end(), {estimator, text(outcome.error), std::to_string(outcome.inliers)});
-                errors.append(row);
+            const Fields pairKey = with(pair.key(), detector, r.name, kind.first);
+            const auto append = [&](const std::string& estimator, const Outcome& outcome) {
+                experiment.table.append(with(pairKey, estimator, outcome.error, outcome.inliers));
             };
-            Fields row = pairKey;
-            row.push_back(numbers(pair, kind.second));
-            matched.append(row);
+            matched.append(with(pairKey, numbers(pair, kind.second)));
             for (double threshold : THRESHOLDS)
-                tell(cv::format("MAGSAC %g px", threshold), byMagsac(kind.second, pair, threshold));
-            tell(LAST, byFindRelativePose(kind.second, pair));
+                append(cv::format("MAGSAC %g px", threshold), byMagsac(kind.second, pair, threshold));
+            append(LAST, byFindRelativePose(kind.second, pair));
         }
     };
 
     DescribedImages described;
-    std::vector<Task> tasks;
     const std::vector<Detector> all = describedByTwo(options);
     const std::vector<LitPair> pairs = withRelit(viewPairs(options));
     for (const LitPair& pair : pairs)
     {
         std::vector<Detector> missing;
         for (const Detector& d : all)
-            if (!errors.has({pair.views.set, pair.views.sequence, pair.views.target, d.name, UNIVERSAL,
-                        "propagated", LAST}))
+            if (!experiment.table.has(with(pair.views.key(), d.name, UNIVERSAL, "propagated", LAST)))
                 missing.push_back(d);
         const auto run = [&, missing] {
             ViewPair views = pair.views;
-            cv::Mat reference = readImage(views.referenceFile, cv::IMREAD_GRAYSCALE),
-                    target = readImage(views.targetFile, cv::IMREAD_GRAYSCALE);
+            cv::Mat reference = readImage(views.referenceFile), target = readImage(views.targetFile);
             if (pair.light >= 0)
                 target = relit(target, pair.light);
             turnUpright(views, reference, target);
@@ -179,9 +168,9 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
             }
         };
         if (!missing.empty())
-            tasks.push_back({pair.views.set + "/" + pair.views.sequence + "/" + pair.views.target, run});
+            experiment.plan({}, pair.views.name(), run);
     }
-    const int skipped = runTasks("estimators", tasks, &errors);
+    const int skipped = experiment.run();
     matched.finish();
     return skipped;
 }

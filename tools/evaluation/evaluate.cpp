@@ -15,13 +15,13 @@
 namespace iib_tools {
 namespace {
 
-struct Experiment
+struct Named
 {
     const char* name;
-    int (*run)(const Options&, const std::vector<ImagePair>&);
+    ExperimentFunction* run;
 };
 
-const Experiment EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
+const Named EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
         {"estimators", estimators}, {"controls", controls}, {"alignment", alignment}, {"matching", matching},
         {"robustness", robustness}, {"comparison", comparison}, {"uncertainty", uncertainty},
         {"views", warpedViews}, {"wxbs", wxbs}};
@@ -37,10 +37,10 @@ void checkSettings(const Options& options)
     if (known.str().empty())
         std::ofstream(file) << settings;
     else if (known.str().compare(0, settings.size(), settings) != 0)
-        CV_Error(cv::Error::StsBadArg, file + " tells of other settings: choose another output folder");
+        CV_Error(cv::Error::StsBadArg, file + " has other settings: choose another output folder");
 }
 
-//! The pairs whose files can be read; the others are told, one line each.
+//! The pairs whose files can be read; reports the others, one line each.
 std::vector<ImagePair> readablePairs(const std::vector<ImagePair>& pairs)
 {
     std::vector<char> good(pairs.size(), false);
@@ -64,7 +64,7 @@ int evaluate(const Options& options)
 {
     for (const std::string& name : options.experiments)
         if (std::none_of(std::begin(EXPERIMENTS), std::end(EXPERIMENTS),
-                    [&](const Experiment& e) { return name == e.name; }))
+                    [&](const Named& e) { return name == e.name; }))
             CV_Error(cv::Error::StsBadArg, "unknown experiment " + name);
     const bool listed = !options.pairs.empty();
     std::vector<ImagePair> pairs;
@@ -74,7 +74,7 @@ int evaluate(const Options& options)
                 pairs.push_back(pair);
     if (!listed && pairs.empty() && findViewPairs(options.roots).empty())
         CV_Error(cv::Error::StsObjectNotFound,
-                "no image sequences found; the README of tools/evaluation tells the layouts");
+                "no image sequences found; the README of tools/evaluation has the layouts");
     cv::utils::fs::createDirectories(options.out);
     checkSettings(options);
 
@@ -86,7 +86,7 @@ int evaluate(const Options& options)
     for (const ImagePair& pair : readable)
         (pair.kind == "marked" ? marked : withTransforms).push_back(pair);
     int skipped = int(pairs.size() - readable.size());
-    for (const Experiment& e : EXPERIMENTS)
+    for (const Named& e : EXPERIMENTS)
         if (options.experiments.empty() || std::find(options.experiments.begin(), options.experiments.end(),
                                                    e.name) != options.experiments.end())
             skipped += e.run(options, e.run == wxbs ? marked : withTransforms);

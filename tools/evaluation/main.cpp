@@ -33,7 +33,7 @@ int run(const CommandLine& line)
     options.out = line.text("out");
     options.roots = line.positional();
     if (options.out.empty() || options.roots.empty())
-        CV_Error(cv::Error::StsBadArg, "--out FOLDER and DATA are needed (--help tells more)");
+        CV_Error(cv::Error::StsBadArg, "--out FOLDER and DATA are needed (see --help)");
     options.experiments = line.all("only");
     options.points = line.whole("points", 1, 1000000);
     options.tolerance = line.number("tolerance", 0, 1e3);
@@ -51,7 +51,7 @@ int run(const CommandLine& line)
     return 0;
 }
 
-//! OpenCV writes every exception, and what it cannot read, to stderr; here they are told once, in one line.
+//! Keeps OpenCV from writing exceptions to stderr, which are reported in one line here.
 int quiet(int, const char*, const char*, const char*, int, void*) { return 0; }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace {
 
 using cv::iib::HierarchicalMatcher;
 
-const int ROUNDS = 5;  // of timing, of which the fastest counts
+const int ROUNDS = 5;  // of timing; the fastest counts
 
 struct Matcher
 {
@@ -19,7 +19,7 @@ struct Matcher
     cv::Ptr<cv::DescriptorMatcher> matcher;
 };
 
-//! The paper's figure: brute force, and thresholds of so many parts of each level's bits; and the module's other modes.
+//! Brute force and the thresholds of the paper's figure, as shares of each level's bits; and the module's other modes.
 std::vector<Matcher> matchers(const std::vector<int>& levels)
 {
     std::vector<Matcher> all = {{"BFMatcher", cv::BFMatcher::create(cv::NORM_HAMMING, true)},
@@ -69,13 +69,11 @@ void evaluatePair(const Options& options, const ImagePair& pair, ResultTable& ta
             ours->resetCost();
         std::vector<cv::DMatch> matches;
         all[i].matcher->match(query, train, matches);
-        Fields row = withCounts({pair.set, pair.sequence, pair.target, all[i].name, pair.kind},
-                countsOf(correctByLocation(
-                                 matches, ofReference, ofTarget, loaded.homography, options.tolerance),
-                        int(seeds.reference.size())));
-        row.push_back(text(ours ? ours->matchCost() : 1));
-        row.push_back(text(milliseconds[i]));
-        table.append(row);
+        const Counts counts = countsOf(
+                correctByLocation(matches, ofReference, ofTarget, loaded.homography, options.tolerance),
+                int(seeds.reference.size()));
+        table.append(with(withCounts(with(pair.key(), all[i].name, pair.kind), counts),
+                ours ? ours->matchCost() : 1., milliseconds[i]));
     }
 }
 
@@ -83,15 +81,15 @@ void evaluatePair(const Options& options, const ImagePair& pair, ResultTable& ta
 
 int matching(const Options& options, const std::vector<ImagePair>& pairs)
 {
-    ResultTable table(options.out + "/matching.csv",
+    Experiment experiment(options.out, "matching",
             {"set", "sequence", "target", "matcher", "kind", "correct", "putative", "correspondences",
                     "precision", "recall", "cost", "milliseconds"},
             4);
-    std::vector<Task> tasks;
     for (const ImagePair& pair : pairs)
-        if (pair.kind == "light" && !table.has({pair.set, pair.sequence, pair.target, "H-t-0.50"}))
-            tasks.push_back({pair.name(), [&options, &table, pair] { evaluatePair(options, pair, table); }});
-    return runTasks("matching", tasks, &table);
+        if (pair.kind == "light")
+            experiment.plan(with(pair.key(), "H-t-0.50"), pair.name(),
+                    [&, pair] { evaluatePair(options, pair, experiment.table); });
+    return experiment.run();
 }
 
 }  // namespace iib_tools

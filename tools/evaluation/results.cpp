@@ -11,7 +11,7 @@
 namespace iib_tools {
 namespace {
 
-//! Between its commas, which nothing quotes; a carriage return at its end is no part of them.
+//! Splits at commas; there are no quotes. A carriage return at the end is dropped.
 Fields splitFields(const std::string& line)
 {
     Fields fields(1);
@@ -90,24 +90,17 @@ void ResultTable::write() const
         CV_Error(cv::Error::StsError, file_ + ": cannot be written");
 }
 
-Fields withCounts(Fields key, const Counts& counts)
+Fields withCounts(const Fields& key, const Counts& counts)
 {
-    for (const std::string& field : {std::to_string(counts.correct), std::to_string(counts.putative),
-                 std::to_string(counts.correspondences), text(precision(counts)), text(recall(counts))})
-        key.push_back(field);
-    return key;
+    return with(
+            key, counts.correct, counts.putative, counts.correspondences, precision(counts), recall(counts));
 }
 
-std::string text(double value)
-{
-    char buffer[32];
-    std::snprintf(buffer, sizeof(buffer), "%.6g", value);
-    return buffer;
-}
+std::string text(double value) { return cv::format("%.6g", value); }
 
-int runTasks(const std::string& title, const std::vector<Task>& tasks, ResultTable* table)
+int runTasks(const std::string& title, const std::vector<Task>& tasks)
 {
-    std::mutex mutex;  // of what follows, and of what is told
+    std::mutex mutex;  // of the counts and of stderr
     int failures = 0;
     size_t done = 0;
     const auto body = [&](const cv::Range& range) {
@@ -135,8 +128,6 @@ int runTasks(const std::string& title, const std::vector<Task>& tasks, ResultTab
         }
     };
     cv::parallel_for_(cv::Range(0, int(tasks.size())), body, double(tasks.size()));
-    if (table)
-        table->finish();
     return failures;
 }
 

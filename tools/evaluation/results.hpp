@@ -13,22 +13,22 @@ namespace iib_tools {
 
 typedef std::vector<std::string> Fields;
 
-/** The rows of a CSV file; none if there is no such file, and a last line cut short by an interruption is left out.
+/** Reads the rows of a CSV file. A missing file has none, and an incomplete last line is left out.
 @throws cv::Exception if the file has other columns. */
 std::vector<Fields> readRows(const std::string& file, const Fields& columns);
 
-/** A CSV file that grows row by row and is found again by the next run. The first `keys` columns name a row.
-Fields hold no commas or line ends. Safe to use from several threads. */
+/** A CSV file that grows row by row; the next run continues it. The first `keys` columns name a row. Fields hold no commas or
+line ends. Safe to use from several threads. */
 class ResultTable
 {
 public:
-    //! Goes on with what an earlier run left. @throws cv::Exception as readRows, or if it cannot be written.
+    //! Reads the rows of an earlier run. @throws cv::Exception as readRows, or if the file cannot be written.
     ResultTable(const std::string& file, const Fields& columns, size_t keys);
 
     bool has(const Fields& key) const;
-    //! Writes the row to the file at once.
+    //! Writes the row at once.
     void append(const Fields& row);
-    //! Rewrites the file in the order of the keys, so that it does not depend on the order of the work.
+    //! Sorts the rows of the file by key, whatever the order of the work.
     void finish();
 
 private:
@@ -41,11 +41,21 @@ private:
     mutable std::mutex mutex_;
 };
 
-//! The row `key` with correct, putative, correspondences, precision and recall behind it.
-Fields withCounts(Fields key, const Counts& counts);
-
-//! A number with at most six significant digits, the same on every machine.
+//! At most six significant digits, the same on every machine.
 std::string text(double value);
+inline std::string text(int value) { return std::to_string(value); }
+inline std::string text(size_t value) { return std::to_string(value); }
+inline std::string text(const std::string& value) { return value; }
+
+//! Appends values to fields.
+template <class... Values> Fields with(Fields fields, const Values&... values)
+{
+    fields.insert(fields.end(), {text(values)...});
+    return fields;
+}
+
+//! Appends correct, putative, correspondences, precision and recall.
+Fields withCounts(const Fields& key, const Counts& counts);
 
 //! One piece of work, such as an image pair; it throws if its data are broken.
 struct Task
@@ -54,9 +64,38 @@ struct Task
     std::function<void()> run;
 };
 
-/** Runs the tasks on cv::getNumThreads() threads, told on stderr by tenths, and finishes the table that they fill. A task that
-throws is told in one line and counted, and the others go on.
-@return how many failed. */
-int runTasks(const std::string& title, const std::vector<Task>& tasks, ResultTable* table = nullptr);
+/** Runs the tasks on cv::getNumThreads() threads and reports every tenth of them on stderr. Reports and counts a task that throws,
+and continues with the others.
+@return the number of failed tasks. */
+int runTasks(const std::string& title, const std::vector<Task>& tasks);
+
+//! A table `<out>/<name>.csv` and the tasks that write its rows.
+class Experiment
+{
+public:
+    Experiment(const std::string& out, const std::string& name, const Fields& columns, size_t keys)
+        : table(out + "/" + name + ".csv", columns, keys), name_(name)
+    {
+    }
+    //! Plans a task unless the table has the row that it writes last.
+    void plan(const Fields& last, const std::string& name, const std::function<void()>& run)
+    {
+        if (!table.has(last))
+            tasks_.push_back({name, run});
+    }
+    //! Runs the tasks. @return the number of failed ones.
+    int run()
+    {
+        const int failed = runTasks(name_, tasks_);
+        table.finish();
+        return failed;
+    }
+
+    ResultTable table;
+
+private:
+    std::string name_;
+    std::vector<Task> tasks_;
+};
 
 }  // namespace iib_tools

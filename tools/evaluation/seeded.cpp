@@ -3,6 +3,8 @@
 #include "seeded.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
 #include "opencv2/iib.hpp"
 #include "opencv2/imgproc.hpp"
@@ -27,8 +29,8 @@ std::vector<cv::KeyPoint> detectSeeds(const std::string& name, const cv::Mat& im
     return keypoints;
 }
 
-/** Local binary patterns (Ojala, Pietikainen and Maenpaa 2002, radius 1), each by the number of its bits, so that means
-of them say something: how many of the eight neighbours are no darker than the pixel. */
+/** Local binary patterns (Ojala, Pietikainen and Maenpaa 2002, radius 1), as the number of the eight neighbours that are no darker
+than the pixel, whose means are meaningful. */
 cv::Mat localBinaryPatterns(const cv::Mat& image)
 {
     cv::Mat around, patterns = cv::Mat::zeros(image.size(), CV_8U);
@@ -59,10 +61,70 @@ void matchSeeds(const Options& options, const LoadedPair& images,
         const std::vector<bool> correct =
                 correctByLocation(mutualMatches(reference, target, feature->defaultNorm()), seeds.reference,
                         seeds.target, images.homography, options.tolerance);
-        Fields row = key;
-        row.insert(row.end(), {c.name, std::to_string(descriptorBytes(*feature))});
-        table.append(withCounts(row, countsOf(correct, correspondences)));
+        table.append(
+                withCounts(with(key, c.name, descriptorBytes(*feature)), countsOf(correct, correspondences)));
     }
+}
+
+/** Plans a row for each configuration that has none yet: the mutual matches of its descriptors at its seeds. Every seed is a
+correspondence, whether the descriptor kept it or not.
+@param key set, sequence, target and kind. @param load reads the images. */
+void planSeeded(const Options& options, const Fields& key, const std::vector<Configuration>& configurations,
+        const std::function<LoadedPair()>& load, Experiment& experiment)
+{
+    std::vector<Configuration> missing;
+    std::copy_if(configurations.begin(), configurations.end(), std::back_inserter(missing),
+            [&](const Configuration& c) { return !experiment.table.has(with(key, c.name)); });
+    if (!missing.empty())
+        experiment.plan(
+                {}, key[0] + "/" + key[1] + "/" + key[2], [&options, &experiment, key, load, missing] {
+                    matchSeeds(options, load(), missing, key, experiment.table);
+                });
+}
+
+bool hasExtras(const Configuration& configuration, const ImagePair& pair)
+{
+    for (const std::string& wanted : configuration.extraNames)
+        if (wanted != TEXTURE &&
+                std::find(pair.extraNames.begin(), pair.extraNames.end(), wanted) == pair.extraNames.end())
+            return false;
+    return true;
+}
+
+//! A rotation or scaling of the reference about its centre.
+struct Warp
+{
+    std::string kind;
+    double amount;  //!< degrees, or factor
+};
+
+std::vector<Warp> warps()
+{
+    std::vector<Warp> all;
+    for (int degrees : {5, 10, 15, 30, 45, 90, 135, 180})
+        all.push_back({"turn", double(degrees)});
+    for (double factor : {0.5, 0.7, 0.85, 1.2, 1.4, 2.0})
+        all.push_back({"scale", factor});
+    return all;
+}
+
+LoadedPair warpedPair(const cv::Mat& reference, const Warp& warp)
+{
+    const cv::Point2f centre(float(reference.cols - 1) / 2, float(reference.rows - 1) / 2);
+    const bool turn = warp.kind == "turn";
+    const cv::Mat affine = cv::getRotationMatrix2D(centre, turn ? warp.amount : 0, turn ? 1 : warp.amount);
+    LoadedPair pair;
+    pair.reference = reference;
+    // Smaller images are averaged, larger ones interpolated, as a camera's lens and sensor would do.
+    cv::Mat source = reference;
+    if (!turn && warp.amount < 1)
+        cv::GaussianBlur(reference, source, cv::Size(), 0.5 / warp.amount);
+    cv::warpAffine(source, pair.target, affine, reference.size(), cv::INTER_CUBIC, cv::BORDER_REFLECT_101);
+    pair.homography = cv::Matx33d::eye();
+    for (int y = 0; y < 2; y++)
+        for (int x = 0; x < 3; x++)
+            pair.homography(y, x) = affine.at<double>(y, x);
+    return pair;
 }
 
 }  // namespace
@@ -102,22 +164,38 @@ Fields seededColumns()
             "correspondences", "precision", "recall"};
 }
 
-void addSeededTask(const Options& options, const Fields& key,
-        const std::vector<Configuration>& configurations, const std::function<LoadedPair()>& load,
-        ResultTable& table, std::vector<Task>& tasks)
+int fixedPoints(const Options& options, const std::vector<ImagePair>& pairs)
 {
-    std::vector<Configuration> missing;
-    for (const Configuration& c : configurations)
+    std::vector<Configuration> all = iibConfigurations();
+    for (const std::string& file : options.saved)
+        all.push_back(savedConfiguration(file));
+    for (const Configuration& baseline : baselineConfigurations())
+        all.push_back(baseline);
+    Experiment experiment(options.out, "fixed_points", seededColumns(), 5);
+    for (const ImagePair& pair : pairs)
     {
-        Fields row = key;
-        row.push_back(c.name);
-        if (!table.has(row))
-            missing.push_back(c);
+        std::vector<Configuration> possible;
+        std::copy_if(all.begin(), all.end(), std::back_inserter(possible),
+                [&](const Configuration& c) { return hasExtras(c, pair); });
+        planSeeded(
+                options, with(pair.key(), pair.kind), possible, [pair] { return loadPair(pair); },
+                experiment);
     }
-    if (!missing.empty())
-        tasks.push_back({key[0] + "/" + key[1] + "/" + key[2], [&options, &table, key, load, missing] {
-                             matchSeeds(options, load(), missing, key, table);
-                         }});
+    return experiment.run();
+}
+
+int robustness(const Options& options, const std::vector<ImagePair>& pairs)
+{
+    Experiment experiment(options.out, "robustness", seededColumns(), 5);
+    std::set<std::string> turned;  // one sequence a set
+    for (const ImagePair& pair : pairs)
+        if (turned.insert(pair.set).second)
+            for (const Warp& warp : warps())
+                planSeeded(
+                        options, {pair.set, pair.sequence, text(warp.amount), warp.kind},
+                        robustnessConfigurations(),
+                        [pair, warp] { return warpedPair(loadPair(pair).reference, warp); }, experiment);
+    return experiment.run();
 }
 
 }  // namespace iib_tools

@@ -12,14 +12,13 @@
 
 namespace iib_tools {
 
-//! Seed points in one reference image, detected once for all configurations that ask for the same.
+//! Seed points of a reference image, detected once by each detector.
 class SeedSource
 {
 public:
-    //! Of count points at most.
     SeedSource(const cv::Mat& reference, int count) : reference_(reference), count_(count) {}
 
-    //! For one target; of the configuration's seedSize unless that is 0.
+    //! At most `count` points that a target shows, with the configuration's seedSize unless that is 0.
     SeedPoints seeds(const Configuration& configuration, cv::Size targetSize, const cv::Matx33d& homography);
 
 private:
@@ -28,18 +27,11 @@ private:
     std::map<std::string, std::vector<cv::KeyPoint>> points_;  // by detector
 };
 
-//! Describes an image's points, of which it leaves those that the descriptor keeps; maps are those of extraNames.
+//! Describes an image's points, and removes points that the descriptor drops. @param maps those of extraNames
 cv::Mat describe(const Configuration& configuration, const cv::Mat& image,
         const std::map<std::string, cv::Mat>& maps, std::vector<cv::KeyPoint>& points);
 
-//! The columns that addSeededTask fills; `set` to `configuration`, the first five, name a row.
+//! The columns of fixed_points.csv and robustness.csv; the first five name a row.
 Fields seededColumns();
-
-/** Adds a task that appends, for each configuration that has no row yet, what the mutual matches of its descriptors make of its
-seeds: every seed is a correspondence, whether the descriptor kept it or not.
-@param key set, sequence, target and kind. @param load gives the images. */
-void addSeededTask(const Options& options, const Fields& key,
-        const std::vector<Configuration>& configurations, const std::function<LoadedPair()>& load,
-        ResultTable& table, std::vector<Task>& tasks);
 
 }  // namespace iib_tools

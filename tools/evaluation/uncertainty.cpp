@@ -17,10 +17,10 @@ namespace {
 using cv::iib::HierarchicalMatcher;
 using cv::iib::IIBDescriptorExtractor;
 
-const double MOST_MOVED = .06;  // of a corner, in parts of the image's size
-const size_t STRANGERS = 3;     // of each pair, views of other places
-const int BORDER = 20;          // pixels beside a rectified image's border, where nothing is looked for
-const double FAR = 3;           // pixels from the truth: a wrong match, whose place no deviation describes
+const double MOST_MOVED = .06;  // of a corner, as a share of the image's size
+const size_t STRANGERS = 3;     // views of other places for each pair
+const int BORDER = 20;          // pixels along a rectified image's border without keypoints
+const double FAR = 3;           // pixels from the truth: a wrong match, which no deviation describes
 
 struct Matched
 {
@@ -47,7 +47,7 @@ struct Stereo
     cv::Mat first, second, mask1, mask2;
 };
 
-//! Both views as one camera would see them, turned so that they look across the way between them.
+//! Both views as one camera would see them, rotated to look across the baseline.
 Stereo rectified(const Stereo& stereo)
 {
     Stereo turned = {stereo.pair, {}, {}, {}, {}};
@@ -119,14 +119,13 @@ void judgePose(const Stereo& stereo, int points, const ErrorRows& rows)
     rows.add("direction of findRelativePose", direction, 2);
 }
 
-//! Of rendered places without the number of the instance, since rooms have furniture in common, and facades windows.
+//! The kind of a rendered place, without the number of the instance: rooms share furniture, and facades windows.
 std::string kindOf(const ViewPair& pair) { return pair.set.substr(0, pair.set.find_last_of('_')); }
 
-//! Images of different places, of which no pose may be found.
+//! Searches a pose between images of different places, where none exists.
 void judgeStrangers(const ViewPair& pair, const ViewPair& other, int points, const ErrorRows& rows)
 {
-    const cv::Mat first = readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE),
-                  second = readImage(other.targetFile, cv::IMREAD_GRAYSCALE);
+    const cv::Mat first = readImage(pair.referenceFile), second = readImage(other.targetFile);
     Matched m = matched(first, second, points);
     cv::Mat points1, points2, R, t;
     cv::iib::propagateMatches(first, m.first, second, m.second, m.matches, points1, points2);
@@ -188,8 +187,7 @@ void judgeAlignment(const ImagePair& pair, uint64 seed, const ErrorRows& rows)
 
 int uncertainty(const Options& options, const std::vector<ImagePair>& pairs)
 {
-    ResultTable table(options.out + "/uncertainty.csv", ErrorRows::columns({"set", "sequence", "target"}), 4);
-    std::vector<Task> tasks;
+    Experiment experiment(options.out, "uncertainty", ErrorRows::columns({"set", "sequence", "target"}), 4);
     const std::vector<ViewPair> views = findViewPairs(options.roots);
     cv::RNG random(1);
     for (size_t i = 0; i < STRANGERS * views.size(); i++)
@@ -197,40 +195,29 @@ int uncertainty(const Options& options, const std::vector<ImagePair>& pairs)
         const ViewPair &pair = views[i % views.size()],
                        &other = views[size_t(random.uniform(0, int(views.size())))];
         const Fields key = {"strangers", pair.set + " " + std::to_string(i), other.set + " " + other.target};
-        if (kindOf(pair) != kindOf(other) && !table.has({key[0], key[1], key[2], "pose of findRelativePose"}))
-            tasks.push_back({key[1] + " and " + key[2], [&options, &table, pair, other, key] {
-                                 judgeStrangers(pair, other, options.points, ErrorRows(table, key));
-                             }});
+        if (kindOf(pair) != kindOf(other))
+            experiment.plan(with(key, "pose of findRelativePose"), key[1] + " and " + key[2], [&, key] {
+                judgeStrangers(pair, other, options.points, ErrorRows(experiment.table, key));
+            });
     }
     for (const ViewPair& pair : views)
-    {
-        if (table.has({pair.set, pair.sequence, pair.target, "direction of findRelativePose"}))
-            continue;
-        const auto judge = [&](const Stereo& stereo) {
-            judgePose(stereo, options.points,
-                    ErrorRows(table, {stereo.pair.set, stereo.pair.sequence, stereo.pair.target}));
-        };
-        tasks.push_back({pair.set + "/" + pair.sequence + "/" + pair.target, [pair, judge] {
-                             const Stereo stereo = {pair, readImage(pair.referenceFile, cv::IMREAD_GRAYSCALE),
-                                     readImage(pair.targetFile, cv::IMREAD_GRAYSCALE), {}, {}};
-                             if (pair.sameLight)
-                                 judge(rectified(stereo));
-                             judge(stereo);
-                         }});
-    }
+        experiment.plan(with(pair.key(), "direction of findRelativePose"), pair.name(), [&] {
+            const auto judge = [&](const Stereo& stereo) {
+                judgePose(stereo, options.points, ErrorRows(experiment.table, stereo.pair.key()));
+            };
+            const Stereo stereo = {pair, readImage(pair.referenceFile), readImage(pair.targetFile), {}, {}};
+            if (pair.sameLight)
+                judge(rectified(stereo));
+            judge(stereo);
+        });
     for (size_t i = 0; i < pairs.size(); i++)
-    {
-        const ImagePair& pair = pairs[i];
-        const Fields key = {pair.set, pair.sequence, pair.target};
-        if (pair.kind != "light" ||
-                table.has({pair.set, pair.sequence, pair.target, "corners of alignImages"}))
-            continue;
-        tasks.push_back({pair.name(), [&options, &table, &pair, key, i] {
-                             judgePoints(pair, options.points, ErrorRows(table, key));
-                             judgeAlignment(pair, i + 1, ErrorRows(table, key));
-                         }});
-    }
-    return runTasks("uncertainty", tasks, &table);
+        if (pairs[i].kind == "light")
+            experiment.plan(with(pairs[i].key(), "corners of alignImages"), pairs[i].name(), [&, i] {
+                const ErrorRows rows(experiment.table, pairs[i].key());
+                judgePoints(pairs[i], options.points, rows);
+                judgeAlignment(pairs[i], i + 1, rows);
+            });
+    return experiment.run();
 }
 
 }  // namespace iib_tools

@@ -11,13 +11,13 @@
 
 namespace iib_tools {
 
-//! Probabilities of confidence limits: of how many errors each holds.
+//! Probabilities of confidence limits.
 const double LEVELS[] = {.1, .25, .5, .75, .9, .95, .99};
 
 //! An estimate's error beside its reported covariance.
 struct JudgedError
 {
-    double squared;       //!< Mahalanobis distance; infinite where the covariance says that there is no error
+    double squared;       //!< Mahalanobis distance; infinite where the covariance allows no error
     double logDeviation;  //!< logarithm of the geometric mean of the reported standard deviations
     double score;  //!< logarithm of the reported density, of Student's t as of confidenceLimit, at the error
 };
@@ -42,27 +42,25 @@ template <int N> JudgedError judged(const cv::Vec<double, N>& error, const cv::M
     return result;
 }
 
-//! Rows of a table, one for a quantity of a pair or an image.
+//! Rows of a table, one for each quantity of a pair or an image.
 class ErrorRows
 {
 public:
-    //! @param columns that name the pair or image.
-    static Fields columns(Fields columns)
+    //! @param names columns that name the pair or image
+    static Fields columns(const Fields& names)
     {
-        columns.insert(columns.end(), {"quantity", "count"});
+        Fields all = with(names, "quantity", "count");
         for (double level : LEVELS)
-            columns.push_back(cv::format("%g", level));
-        columns.insert(columns.end(), {"log_deviation", "score"});
-        return columns;
+            all.push_back(text(level));
+        return with(all, "log_deviation", "score");
     }
 
     ErrorRows(ResultTable& table_, const Fields& name_) : table(table_), name(name_) {}
 
-    //! @param dimensions of each error; its count within the limit of each level, and sums, are written.
+    //! Counts the errors within the limit of each level, and sums deviations and scores.
     void add(const std::string& quantity, const std::vector<JudgedError>& errors, int dimensions) const
     {
-        Fields row = name;
-        row.insert(row.end(), {quantity, std::to_string(errors.size())});
+        Fields row = with(name, quantity, errors.size());
         for (double level : LEVELS)
             row.push_back(
                     std::to_string(std::count_if(errors.begin(), errors.end(), [&](const JudgedError& error) {
@@ -74,8 +72,7 @@ public:
             logDeviation += error.logDeviation;
             score += error.score;
         }
-        row.insert(row.end(), {text(logDeviation), text(score)});
-        table.append(row);
+        table.append(with(row, logDeviation, score));
     }
 
 private:
@@ -83,7 +80,7 @@ private:
     Fields name;
 };
 
-//! The angles by which a direction errs, in the axes of findRelativePose's documentation.
+//! The error of a direction as angles about the axes of findRelativePose's documentation.
 inline cv::Vec2d alongTangents(const cv::Vec3d& found, const cv::Vec3d& truth)
 {
     int shortest = 0;
@@ -95,17 +92,17 @@ inline cv::Vec2d alongTangents(const cv::Vec3d& found, const cv::Vec3d& truth)
     const cv::Vec3d b = cv::normalize(found.cross(axis)), c = found.cross(b);
     const cv::Vec2d along(b.dot(truth), c.dot(truth));
     const double sine = cv::norm(along), angle = std::atan2(sine, found.dot(truth));
-    return sine > 0 ? along * (angle / sine) : cv::Vec2d(angle, 0);  // of the opposite one, whichever way
+    return sine > 0 ? along * (angle / sine) : cv::Vec2d(angle, 0);  // opposite: any axis
 }
 
-//! Turns of two cameras after which R = I, and t, of length 1, along the x axis.
+//! Rotations of two cameras after which R = I and t is a unit vector along the x axis.
 struct Rectification
 {
     cv::Matx33d first, second;
     cv::Vec3d t;
 };
 
-//! Of cameras with a way between them that is not the way they look. @param R, t from the first's axes to the second's
+//! Rectifies cameras that do not look along their baseline. @param R, t from the first's axes to the second's
 inline Rectification rectificationOf(const cv::Matx33d& R, const cv::Vec3d& t)
 {
     const cv::Vec3d way = cv::normalize(-(R.t() * t)),

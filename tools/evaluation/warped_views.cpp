@@ -9,7 +9,7 @@
 #include "experiments.hpp"
 #include "opencv2/imgcodecs.hpp"
 #include "opencv2/imgproc.hpp"
-#include "pair_methods.hpp"
+#include "pose_estimates.hpp"
 #include "results.hpp"
 
 namespace iib_tools {
@@ -21,7 +21,7 @@ const int SLOW_EVERY = 6;             // slow methods match one photograph in so
 const double LONGITUDE = 20;          // degrees: the axis that a tilt shortens
 const double GAMMA = 1.8, NOISE = 4;  // of the second image's light; grey levels
 
-//! How the second image is made of the first one: an axis shortened by the tilt, all scaled, then rotated.
+//! Makes the second image from the first: shortens an axis by the tilt, scales, then rotates.
 struct Warp
 {
     const char* kind;
@@ -49,7 +49,7 @@ cv::Matx33d rotation(double degrees)
     return {c, -s, 0, s, c, 0, 0, 0, 1};
 }
 
-//! From pixels of the image to those of a canvas that shows all of it; if it is enlarged, to its middle of the same size.
+//! Maps pixels to a canvas that shows the whole image, or the middle of the same size if it is enlarged.
 cv::Matx33d transformOf(const Warp& warp, const cv::Size& size, cv::Size& canvas)
 {
     const cv::Matx33d shape = rotation(warp.degrees) * rotation(LONGITUDE) *
@@ -66,7 +66,7 @@ cv::Matx33d transformOf(const Warp& warp, const cv::Size& size, cv::Size& canvas
     return cv::Matx33d(1, 0, -shift.x, 0, 1, -shift.y, 0, 0, 1) * shape;
 }
 
-//! The image under the warp, darker and with noise; each pixel is a mean over the area that it covers, as a sensor has it.
+//! Warps, darkens and adds noise. Supersamples, since a sensor averages over the area of a pixel.
 cv::Mat warped(const cv::Mat& image, const Warp& warp, uint64 seed, cv::Matx33d& truth)
 {
     cv::Size canvas;
@@ -87,14 +87,14 @@ cv::Mat warped(const cv::Mat& image, const Warp& warp, uint64 seed, cv::Matx33d&
 
 cv::Mat readReduced(const std::string& file)
 {
-    cv::Mat image = readImage(file, cv::IMREAD_GRAYSCALE);
+    cv::Mat image = readImage(file);
     const double scale = double(WIDTH) / std::max(image.cols, image.rows);
     if (scale < 1)
         cv::resize(image, image, cv::Size(), scale, scale, cv::INTER_AREA);
     return image;
 }
 
-//! Processor time of this thread, milliseconds: within a task, calls use no other one.
+//! Processor time of this thread, milliseconds; a task uses no other thread.
 double processorTime()
 {
     timespec time;
@@ -102,9 +102,8 @@ double processorTime()
     return double(time.tv_sec) * 1e3 + double(time.tv_nsec) * 1e-6;
 }
 
-//! A row for two images.
-void matchBy(
-        const PairMethod& method, const LoadedPair& images, double tolerance, Fields row, ResultTable& table)
+void matchBy(const PairMethod& method, const LoadedPair& images, double tolerance, const Fields& key,
+        ResultTable& table)
 {
     Points points;
     const double start = processorTime();
@@ -113,9 +112,7 @@ void matchBy(
     int right = 0;
     for (size_t i = 0; i < points.target.size(); i++)
         right += projectionError(images.homography, points.reference[i], points.target[i]) < tolerance;
-    row.insert(row.end(), {method.name, std::to_string(found), std::to_string(right),
-                                  std::to_string(points.target.size()), text(time)});
-    table.append(row);
+    table.append(with(key, method.name, int(found), right, points.target.size(), time));
 }
 
 //! One photograph of each sequence and of each folder of views: set, sequence, file.
@@ -136,21 +133,21 @@ std::vector<Fields> photographs(const Options& options, const std::vector<ImageP
 
 int warpedViews(const Options& options, const std::vector<ImagePair>& pairs)
 {
-    ResultTable table(options.out + "/views.csv",
+    Experiment experiment(options.out, "views",
             {"set", "sequence", "kind", "amount", "method", "found", "right", "matches", "milliseconds"}, 5);
-    std::vector<Task> tasks;
     const auto plan = [&](const Fields& key, const std::function<bool(const PairMethod&)>& isUsed,
                               const std::function<LoadedPair()>& load) {
         std::vector<PairMethod> missing;
         for (const PairMethod& method : pairMethods(options.points))
-            if (isUsed(method) && !table.has({key[0], key[1], key[2], key[3], method.name}))
+            if (isUsed(method) && !experiment.table.has(with(key, method.name)))
                 missing.push_back(method);
+        const auto run = [&, key, load, missing] {
+            const LoadedPair images = load();
+            for (const PairMethod& method : missing)
+                matchBy(method, images, options.tolerance, key, experiment.table);
+        };
         if (!missing.empty())
-            tasks.push_back({key[0] + "/" + key[1] + " " + key[2] + " " + key[3], [&, key, load, missing] {
-                                 const LoadedPair images = load();
-                                 for (const PairMethod& method : missing)
-                                     matchBy(method, images, options.tolerance, key, table);
-                             }});
+            experiment.plan({}, key[0] + "/" + key[1] + " " + key[2] + " " + key[3], run);
     };
     const std::vector<Fields> all = photographs(options, pairs);
     for (size_t i = 0; i < all.size(); i++)
@@ -181,7 +178,7 @@ int warpedViews(const Options& options, const std::vector<ImagePair>& pairs)
                                 cv::Matx33d::zeros(), {}, {}};
                     });
     }
-    return runTasks("views", tasks, &table);
+    return experiment.run();
 }
 
 }  // namespace iib_tools

@@ -6,7 +6,7 @@
 #include "experiments.hpp"
 #include "opencv2/calib3d.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
-#include "pair_methods.hpp"
+#include "pose_estimates.hpp"
 #include "results.hpp"
 
 namespace iib_tools {
@@ -35,7 +35,7 @@ Points readCorrespondences(const std::string& file)
     return points;
 }
 
-//! By the settings of WxBS's own example; empty without eight matches.
+//! The fundamental matrix by the settings of WxBS's own example; empty for fewer than eight matches.
 cv::Mat fundamental(const Points& points)
 {
     return points.target.size() < 8 ? cv::Mat()
@@ -69,8 +69,8 @@ void matchMarked(const PairMethod& method, int points, const ImagePair& pair, Re
         within10 += error <= 10;
     }
     const double count = double(truth.target.size());
-    table.append({pair.set, pair.sequence, method.name, std::to_string(points), std::to_string(found),
-            std::to_string(matches.target.size()), text(within10 / count), text(share / count / THRESHOLDS)});
+    table.append(with({pair.set, pair.sequence, method.name}, points, int(found), matches.target.size(),
+            within10 / count, share / count / THRESHOLDS));
 }
 
 }  // namespace
@@ -79,16 +79,15 @@ int wxbs(const Options& options, const std::vector<ImagePair>& pairs)
 {
     if (pairs.empty())
         return 0;
-    ResultTable table(options.out + "/wxbs.csv",
+    Experiment experiment(options.out, "wxbs",
             {"set", "sequence", "method", "points", "found", "matches", "within_10", "share"}, 3);
     const std::vector<PairMethod> methods = pairMethods(options.points);
-    std::vector<Task> tasks;
     for (const ImagePair& pair : pairs)
         for (const PairMethod& method : methods)
-            if (!method.slow && !table.has({pair.set, pair.sequence, method.name}))
-                tasks.push_back({pair.name() + ", " + method.name,
-                        [&] { matchMarked(method, options.points, pair, table); }});
-    return runTasks("wxbs", tasks, &table);
+            if (!method.slow)
+                experiment.plan({pair.set, pair.sequence, method.name}, pair.name() + ", " + method.name,
+                        [&] { matchMarked(method, options.points, pair, experiment.table); });
+    return experiment.run();
 }
 
 }  // namespace iib_tools

@@ -56,8 +56,8 @@ Sample drawWalk(const std::vector<WalkPair>& scene, cv::RNG& rng)
 {
     const WalkPair& drawn = scene[size_t(rng.uniform(0, int(scene.size())))];
     Sample sample;
-    sample.pair.reference = readImage(drawn.referenceFile, cv::IMREAD_GRAYSCALE);
-    sample.pair.target = readImage(drawn.targetFile, cv::IMREAD_GRAYSCALE);
+    sample.pair.reference = readImage(drawn.referenceFile);
+    sample.pair.target = readImage(drawn.targetFile);
     sample.pair.homography = cv::Matx33d::eye();
     sample.relief = cv::makePtr<Relief>(loadRelief(drawn));
     return sample;

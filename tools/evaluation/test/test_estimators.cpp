@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <map>
 
-#include "../described_images.hpp"
+#include "../detectors.hpp"
 #include "../experiments.hpp"
 #include "../results.hpp"
 #include "iib_geometry/test/test_folder.hpp"
@@ -62,25 +62,35 @@ std::map<std::string, double> errorsOfPoses(const Options& options, size_t light
     return found;
 }
 
-TEST(Estimators, pose_of_two_views)
+const cv::Vec3d TURN(0.02, 0.08, 0);
+
+//! Two cameras, and the options of the experiment on AKAZE's points.
+struct Estimators : public testing::Test
 {
-    TestFolder folder;
+    Estimators()
+    {
+        options.out = folder.path("results");
+        options.roots = {folder.path("data")};
+        options.experiments = {"estimators"};
+        options.detectors = {"AKAZE"};
+        options.points = 600;
+        cv::Rodrigues(TURN, second.rotation);
+        folder.makeFolder("data/walk/images");
+    }
+
+    const TestFolder folder;
     Options options;
-    options.out = folder.path("results");
-    options.roots = {folder.path("data")};
-    options.experiments = {"estimators"};
-    options.detectors = {"AKAZE"};
-    options.points = 600;
     const Camera first = {cv::Matx33d::eye(), cv::Vec3d()};
     Camera second = {cv::Matx33d(), cv::Vec3d(0.9, 0.1, 0)};
-    const cv::Vec3d turn(0.02, 0.08, 0);
-    cv::Rodrigues(turn, second.rotation);
-    folder.makeFolder("data/walk/images");
+};
+
+TEST_F(Estimators, pose_of_two_views)
+{
     folder.write("data/walk/cameras.txt", cv::format("1 PINHOLE 480 360 %g %g 240.5 180.5\n", FOCAL, FOCAL));
     // The inverse rotation, as a quaternion.
-    const double w = std::cos(cv::norm(turn) / 2), s = -std::sin(cv::norm(turn) / 2) / cv::norm(turn);
+    const double w = std::cos(cv::norm(TURN) / 2), s = -std::sin(cv::norm(TURN) / 2) / cv::norm(TURN);
     folder.write("data/walk/poses.txt",
-            "a 0 0 0 0 0 0 1\n" + cv::format("b 0.9 0.1 0 %.9f %.9f 0 %.9f\n", turn[0] * s, turn[1] * s, w));
+            "a 0 0 0 0 0 0 1\n" + cv::format("b 0.9 0.1 0 %.9f %.9f 0 %.9f\n", TURN[0] * s, TURN[1] * s, w));
     cv::imwrite(folder.path("data/walk/images/a.png"), rendered(first, 0.9));
     cv::imwrite(folder.path("data/walk/images/b.png"), rendered(second, 0.6));
     EXPECT_EQ(0, evaluate(options));
@@ -114,19 +124,10 @@ TEST(Estimators, pose_of_two_views)
 }
 
 //! The second camera was turned by a quarter clockwise; in the other list its image is matched as it is.
-TEST(Estimators, pairs_of_lists)
+TEST_F(Estimators, pairs_of_lists)
 {
-    const TestFolder folder;
-    Options options;
-    options.out = folder.path("results");
     options.roots = {folder.path("")};
     options.pairs = {folder.path("pairs.txt"), folder.path("as_they_are.txt")};
-    options.experiments = {"estimators"};
-    options.detectors = {"AKAZE"};
-    options.points = 600;
-    const Camera first = {cv::Matx33d::eye(), cv::Vec3d()};
-    Camera second = {cv::Matx33d(), cv::Vec3d(0.9, 0.1, 0)};
-    cv::Rodrigues(cv::Vec3d(0.02, 0.08, 0), second.rotation);
     cv::Mat image = rendered(first, 0.9), turned;
     cv::imwrite(folder.path("a.png"), image);
     cv::rotate(image, turned, cv::ROTATE_90_CLOCKWISE);

@@ -26,7 +26,7 @@ for section in ("all", "detectors", "curves", "pictures", "moved", "poses", "run
 for name in ("IIB", "IIB BALANCED", "ORB", "SIFT", "AKAZE-486"):
     assert re.search(r'<td>%s( <span class="tag">learned</span>)?</td><td>\d+</td><td data-value="[\d.]+">' % name, text), name
 for meaning in re.findall(r"<dd>(.*?)</dd>", text):
-    assert meaning.endswith(".") and ". " not in meaning, meaning  # a metric is told in one sentence
+    assert meaning.endswith(".") and ". " not in meaning, meaning  # one sentence per metric
 for method in ("recommended chain", "ORB"):
     assert '"name": "%s"' % method in text, method
 for link in re.findall(r'(?:src|href)="([^"#]+)"', text):

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Which rows count where, how sure means are, what is said of speed and of localization; needs pandas."""
-import csv
+"""Tests groups of rows, intervals, and figures of speed and localization; needs pandas."""
 import pathlib
 import sys
 import tempfile
@@ -15,6 +14,15 @@ import speed  # noqa: E402
 import summaries  # noqa: E402
 import tables  # noqa: E402
 import timings  # noqa: E402
+
+
+def summarized(lines, make, *arguments):
+    """The rows that a function writes for a file with these lines."""
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
+        source.write_text('\n'.join(line if isinstance(line, str) else ','.join(map(str, line)) for line in lines))
+        make(source, target, *arguments)
+        return summaries.read(target)
 
 
 class Figures(unittest.TestCase):
@@ -43,11 +51,7 @@ class Figures(unittest.TestCase):
     def test_views_count_by_what_was_chosen_on_a_scene(self):
         lines = ['set,sequence,kind,amount,method,found,right,matches,milliseconds', 's,wall,tilt,2,SIFT,1,4,9,1', 's,graf,tilt,2,SIFT,1,8,9,1', 's,wall,tilt,2,AffineFeature,1,9,9,1',
                  's,boat,tilt,2,SIFT,1,0,9,1', 'tilde_webcam,courbevoie/2 and iib_demo/scene/2,unrelated,,SIFT,1,0,9,1', 's,wall/2 and t/u/2,unrelated,,SIFT,0,0,9,1']
-        with tempfile.TemporaryDirectory() as folder:
-            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
-            source.write_text('\n'.join(lines))
-            summaries.summarize_views(source, target)
-            found = {(row['place'], row['method']): (row['pairs'], row['right'], row['found'], row['misled']) for row in summaries.read(target)}
+        found = {(row['place'], row['method']): (row['pairs'], row['right'], row['found'], row['misled']) for row in summarized(lines, summaries.summarize_views)}
         self.assertEqual(found, {('photographs', 'SIFT'): ('2', '6', '1', '0.5'), ('photographs', 'AffineFeature'): ('1', '9', '1', '0'), ('some photographs', 'SIFT'): ('1', '4', '1', '1'),
                                  ('some photographs', 'AffineFeature'): ('1', '9', '1', '0'), ('chosen on', 'SIFT'): ('1', '0', '1', '1'), ('unrelated', 'SIFT'): ('1', '0', '0', '0')})
 
@@ -55,24 +59,15 @@ class Figures(unittest.TestCase):
         for row, places in ((('lights', 'street', 'light'), ['rendered']), (('lights', 'room', 'light'), []),
                             (('tilde_webcam', 's', 'light'), []), (('iib_demo', 's', 'light'), ['light']), (('o', 'wall', 'viewpoint'), [])):
             self.assertEqual(summaries.curve_places(dict(zip(('set', 'sequence', 'kind'), row))), places, row)
-        with tempfile.TemporaryDirectory() as folder:
-            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
-            source.write_text('set,sequence,kind,detector,descriptor,correspondences,curve\n'
-                              'd,s,light,ORB,ORB,10,1:1 4:8\nd,t,light,ORB,ORB,20,0:0 8:8\nd,s,light,ORB,IIB SMALL,10,1:1 4:8\n')
-            summaries.summarize_curves(source, target)
-            self.assertEqual(target.read_text().splitlines()[1:], ['light,ORB,ORB,1,2,0.5,0.05,0', 'light,ORB,ORB,2,2,6,0.4,0.25'])
+        found = summarized(['set,sequence,kind,detector,descriptor,correspondences,curve', 'd,s,light,ORB,ORB,10,1:1 4:8', 'd,t,light,ORB,ORB,20,0:0 8:8',
+                            'd,s,light,ORB,IIB SMALL,10,1:1 4:8'], summaries.summarize_curves)
+        self.assertEqual([','.join(row.values()) for row in found], ['light,ORB,ORB,1,2,0.5,0.05,0', 'light,ORB,ORB,2,2,6,0.4,0.25'])
 
     def test_poses_are_judged_where_nothing_was_trained_or_chosen(self):
         heads = 'set', 'detector', 'descriptor', 'points', 'estimator', 'sequence', 'error', 'inliers'
         errors = {'strecha': (0, 5), 'strecha relit': (10,), 'facade_2': (2,), 'facade_1': (0,), 'room_31': (3,), 'list pairs.txt': (15,), 'walk_facade': (5,), 'walk_room': (0,), 'walk_terrain': (0,)}
-        with tempfile.TemporaryDirectory() as folder:
-            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
-            with open(source, 'w', newline='') as file:
-                csv.writer(file).writerows([heads] + [(name, 'Hessian', 'IIB', 'plain', 'MAGSAC', error, error, 9)
-                                                      for name, some in errors.items() for error in some])
-            summaries.summarize(source, target, *summaries.PLANS['estimators.csv'])
-            with open(target, newline='') as file:
-                found = {row['place']: row for row in csv.DictReader(file)}
+        lines = [(name, 'Hessian', 'IIB', 'plain', 'MAGSAC', error, error, 9) for name, some in errors.items() for error in some]
+        found = {row['place']: row for row in summarized([heads, *lines], summaries.summarize, *summaries.PLANS['estimators.csv'])}
         self.assertEqual({place: (row['pairs'], *(round(float(row[area]), 3) for area in ('at_20', 'at_10', 'at_5', 'at_2'))) for place, row in found.items()},
                          {'same light': ('2', .875, .75, .5, .5), 'other light': ('1', .9, .8, .6, 0), 'list pairs.txt': ('1', .25, 0, 0, 0)})
         self.assertEqual((found['same light']['low'], found['same light']['high']), ('0', '1'))
@@ -92,7 +87,7 @@ class Figures(unittest.TestCase):
     def test_a_detector_that_nobody_placed_is_drawn(self):
         row = {'milliseconds': '9', 'at_5': '.5', 'low': '.4', 'high': '.6'}
         with unittest.mock.patch.object(tables, 'poses_by_time', lambda: {('new one', points, 'm'): {'plain': row, 'refined': row} for points in (9, 8)}):
-            self.assertIn('<!-- 8, 9 -->', charts.cost())  # as matplotlib tells the text of a line
+            self.assertIn('<!-- 8, 9 -->', charts.cost())  # the text of a line in matplotlib's SVG
 
     def test_intervals(self):
         self.assertEqual(summaries.interval([[.5]] * 9), [.5, .5])
@@ -107,13 +102,8 @@ class Figures(unittest.TestCase):
         errors = {('yard_2', '0.8'): 0, ('yard_2', '0.9'): 5, ('room_2', '0.8'): 2.5, ('room_2', '0.9'): 1, ('court_2', '0.8'): 'inf', ('court_2', '0.9'): 2.5}
         lines = ['%s,night,1,%s,%s,0,%s,%s,9' % (place, *method, ratio, error if method[0] == 'ORB' else 0)
                  for (place, ratio), error in errors.items() for method in (controls.CHAIN, ('ORB', 'ORB'))]
-        with tempfile.TemporaryDirectory() as folder:
-            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
-            source.write_text(heads)
-            controls.summarize(source, target)  # of no views at all
-            source.write_text('\n'.join([heads, *lines]))
-            controls.summarize(source, target)
-            found = summaries.by(summaries.read(target), 'place', 'detector', ratio='best')
+        self.assertEqual(summarized([heads], controls.summarize), [])
+        found = summaries.by(summarized([heads, *lines], controls.summarize), 'place', 'detector', ratio='best')
         # without yard .9 is best, without room and without court .8
         self.assertEqual({place: (row['pairs'], row['at_5'], row['less'], row['poses'], row['wrong']) for (place, name), row in found.items() if name == 'ORB' and place in (
             'yard', 'room', 'court', 'other light')},
@@ -127,12 +117,8 @@ class Figures(unittest.TestCase):
         rows = [('tilde_webcam' if target else 'iib_demo', target, 'ORB', descriptor, 'light', correct, target)
                 for descriptor, counts in (('ORB', (10, 30)), ('IIB', (20, 30, 99))) for target, correct in enumerate(counts)]
         heads = 'set', 'target', 'detector', 'descriptor', 'kind', 'correct', 'sequence'
-        with tempfile.TemporaryDirectory() as folder:
-            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'out.csv')
-            with open(source, 'w', newline='') as file:
-                csv.writer(file).writerows([heads, *rows, ('graf', 1, 'ORB', 'ORB', 'viewpoint', 9, 's')])
-            summaries.summarize_gains(source, target)
-            self.assertEqual(target.read_text().splitlines()[1:], ['light,ORB,1,1,2.0000,2.0000,2.0000', 'natural,ORB,2,2,1.2500,1.0000,2.0000'])
+        found = summarized([heads, *rows, ('graf', 1, 'ORB', 'ORB', 'viewpoint', 9, 's')], summaries.summarize_gains)
+        self.assertEqual([','.join(row.values()) for row in found], ['light,ORB,1,1,2.0000,2.0000,2.0000', 'natural,ORB,2,2,1.2500,1.0000,2.0000'])
 
     def test_uncertainty(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -207,7 +193,7 @@ class Figures(unittest.TestCase):
             self.assertEqual(runs(heads, 'b', '2002-02-02'), ['comparison.csv,a,2001-01-01,on a', other])  # nothing was measured
             self.assertEqual(runs(heads + 'r,t,ORB,ORB,1,1,1,1,1\n', 'a;c', '2003-03-03'), ['comparison.csv,a;c,2003-03-03,on a;c', other])
 
-    def test_no_error_is_told_where_nothing_was_found(self):
+    def test_without_poses_there_is_no_error(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder, 'setups.csv')
             file.write_text('map,setup,light,images,found,within_5,lateral,longitudinal,altitude,orientation\n'

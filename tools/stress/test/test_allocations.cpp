@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Every allocation of the library, and of OpenCV beneath it, fails in turn: the call that needed it throws, and the object
-// goes on as if it had not been called.
+// Every allocation of the library, and of OpenCV beneath it, fails in turn. The call throws, and the object stays as it was.
 
 #include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/iib.hpp"
@@ -67,8 +66,8 @@ Mat noise(Size size, int type, int seed)
     return image;
 }
 
-/** Calls `step` with its first allocation failing, then its second and so on, up to none; after each, `check` looks
- whether all is as before. Once with one failure, and once with all allocations failing from there. */
+/** Calls `step` with its first allocation failing, then its second and so on, until none fails; after each call `check` expects the
+ state before. Once with one failure, and once with all later allocations failing too. */
 void failEachAllocation(
         const std::string& what, const std::function<void()>& step, const std::function<void()>& check)
 {

@@ -108,7 +108,7 @@ TEST(MapError, of_an_exact_map_is_zero)
     RNG random(4);
     const Matx66d none = mapError(WrongMap(random, 5, 0).map);
     EXPECT_LT(cv::norm(none, NORM_INF), 1e-12);
-    EXPECT_EQ(Matx66d::zeros(), mapError(WrongMap(random, 2, .01).map)) << "which nothing tells";
+    EXPECT_EQ(Matx66d::zeros(), mapError(WrongMap(random, 2, .01).map)) << "two images determine no error";
 }
 
 }  // namespace

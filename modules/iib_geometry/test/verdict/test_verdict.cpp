@@ -152,7 +152,6 @@ TEST(Verdict, wide_scales_make_no_pose_of_wrong_matches)
         }
 }
 
-// Who tries ten limits finds ten times as many false alarms.
 TEST(Verdict, the_span_of_points_is_without_the_outermost)
 {
     Mat points(100, 2, CV_64F);
@@ -162,6 +161,7 @@ TEST(Verdict, the_span_of_points_is_without_the_outermost)
     EXPECT_GT(spanOf(points).width, 90);
 }
 
+// Ten limits give ten times as many false alarms.
 TEST(Verdict, limits_that_are_tried_count)
 {
     RNG random(21);
@@ -176,7 +176,7 @@ TEST(Verdict, limits_that_are_tried_count)
     EXPECT_EQ(1, best);
 }
 
-// The least that a thousand wrong matches tell, however narrow the limit is.
+// The least probability that a thousand wrong matches can show, for any limit.
 TEST(Verdict, the_chance_of_what_no_wrong_match_does_is_that_of_one_more)
 {
     RNG random(22);
@@ -186,7 +186,7 @@ TEST(Verdict, the_chance_of_what_no_wrong_match_does_is_that_of_one_more)
     EXPECT_NEAR(2 * 800 / (640 * 480.), verdict.chance(Verdict::FROM_LINE, 1, wrong), .001) << "of any line";
 }
 
-// Of many wrong matches in a place one agrees: right ones in a single place make no more of them.
+// One of many wrong matches in a place agrees by chance. Right matches in one other place must not count for more.
 TEST(Verdict, a_place_of_many_matches_agrees_by_more_chance_than_a_match)
 {
     RNG random(20);
