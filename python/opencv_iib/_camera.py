@@ -27,7 +27,7 @@ class Camera(_core.Camera):
 
     @classmethod
     def parse(cls, text: str) -> Camera:
-        """From ``'MODEL,WIDTH,HEIGHT,PARAMS'``. :raises opencv_iib.error: as for the class itself."""
+        """Makes a camera of ``'MODEL,WIDTH,HEIGHT,PARAMS'``. :raises opencv_iib.error: for an unknown model or wrong parameters."""
         if not isinstance(text, str):
             raise TypeError(f"camera: a text 'MODEL,WIDTH,HEIGHT,PARAMS' is needed, not {text!r}")
         model, comma, rest = text.partition(',')
@@ -42,17 +42,17 @@ class Camera(_core.Camera):
         return super().project(as_rows_of(points, 3, 'points'))
 
     def undistorted(self, pixels: ArrayLike) -> NDArray[np.float64]:
-        """Where a camera of the same `matrix` and no distortion would see what this one sees at pixels, N x 2: what
-        :func:`opencv_iib.findRelativePose` takes. NaN for pixels at which it sees nothing."""
+        """Pixels, N x 2, as seen by a camera with the same `matrix` and no distortion, as findRelativePose needs them; NaN for pixels that show
+        nothing."""
         return super().undistorted(as_rows_of(pixels, 2, 'pixels'))
 
     def resized(self, width: int, height: int) -> Camera:
-        """Of its images, resized by an interpolation that keeps the corners of the picture, as all of OpenCV's do."""
+        """The camera of resized images, whose corners stay in place, as by all of OpenCV's interpolations."""
         return Camera._of(super().resized(integer(width, 'width'), integer(height, 'height')))
 
     def upright(self, orientation: int) -> Camera:
-        """Of its images, turned upright as EXIF's orientation asks.
-        :param orientation: 1, 3, 6 or 8.
+        """The camera of upright images.
+        :param orientation: EXIF's, of the stored images: 1, 3, 6 or 8.
         :raises opencv_iib.error: for another one: no camera sees a mirrored image."""
         return Camera._of(super().upright(integer(orientation, 'orientation')))
 

@@ -1,4 +1,4 @@
-"""What image files say about themselves: EXIF data, and segments of JPEG."""
+"""EXIF data of image files, and segments of JPEG."""
 from __future__ import annotations
 
 import contextlib

@@ -159,7 +159,7 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
         self._setSelection(as_matrix(quads, 'the selection'))
 
     def save(self, filename: Path) -> None:
-        """As write()."""
+        """The same as write()."""
         self.write(filename)
 
     def write(self, fileName: Path) -> None:
@@ -194,5 +194,5 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
         return f'{type(self).__name__}({self.descriptorSize()} bytes, scaleFactor={self.getScaleFactor():g})'
 
 
-#: As in C++.
+#: The short name, as in C++.
 IIB = IIBDescriptorExtractor

@@ -27,7 +27,7 @@ class MappedIndex(_core.MappedIndex):
     GIL; threads may share an object as long as none adds, removes or refreshes. A pickle holds the folder's name alone."""
 
     def __init__(self, folder: Path) -> None:
-        """As :meth:`open`."""
+        """The same as :meth:`open`."""
         self._folder = os.fspath(folder)
         super().__init__(self._folder)
 

@@ -75,17 +75,17 @@ class ViewMatcher:
     """Matches one image with many others, see :func:`matchViews`, and computes its views once. Threads may share one."""
 
     def __init__(self, image1: ArrayLike, maxFeatures: int = 4000, maxTilt: float = 4, mask1: Optional[ArrayLike] = None) -> None:
-        """As of :func:`matchViews`."""
+        """Arguments are those of :func:`matchViews`."""
         self._image = as_image(image1)  # the core keeps a view of it
         self._core = _core.ViewMatcher.create(self._image, integer(maxFeatures, 'maxFeatures'), number(maxTilt, 'maxTilt'), as_mask(mask1))
 
     @staticmethod
     def create(image1: ArrayLike, maxFeatures: int = 4000, maxTilt: float = 4, mask1: Optional[ArrayLike] = None) -> ViewMatcher:
-        """As the class itself."""
+        """Makes one, as the class itself does."""
         return ViewMatcher(image1, maxFeatures, maxTilt, mask1)
 
     def match(self, image2: ArrayLike, mask2: Optional[ArrayLike] = None) -> ViewMatches:
-        """As matchViews. The GIL is released meanwhile."""
+        """matchViews with another image. The GIL is released meanwhile."""
         found, reason, view, *rows = self._core.match(as_image(image2), as_mask(mask2))
         points1, points2, covariances, similarities = float_rows(*rows)
         return ViewMatches(found, reason, points1, points2, covariances, similarities, view)

@@ -99,7 +99,7 @@ void bindDetectors(nb::module_& m)
         new (self) HeldDetector<Normalized>(Normalized::create(detector.held, sigma));
     });
     property(normalized, "Sigma", &Normalized::getSigma, &Normalized::setSigma,
-            "Of the Gaussian filter in pixels, 1 to 256.");
+            "Sigma of the Gaussian filter in pixels, 1 to 256.");
 
     nb::class_<HeldDetector<Hessian>, Detector> hessian(m, "HessianDetector");
     sharing(hessian);
@@ -112,11 +112,11 @@ void bindDetectors(nb::module_& m)
     property(hessian, "Scales", &Hessian::getScales, &Hessian::setScales,
             "Number of scales, 1 to 8, each sqrt(2) times the one before.");
     property(hessian, "Sigma", &Hessian::getSigma, &Hessian::setSigma,
-            "Of the smallest scale in pixels, 1.5 to 8.");
+            "Sigma of the smallest scale in pixels, 1.5 to 8.");
     property(hessian, "NormalizationSigma", &Hessian::getNormalizationSigma, &Hessian::setNormalizationSigma,
-            "Of the local normalization's Gaussian in pixels of the (reduced) image, 2 to 256.");
+            "Sigma of the local normalization's Gaussian in pixels of the (reduced) image, 2 to 256.");
     property(hessian, "WorkingSize", &Hessian::getWorkingSize, &Hessian::setWorkingSize,
-            "Of images, pixels of the longer side, 64 or more; larger ones are reduced by a whole factor, "
+            "Longer side of images in pixels, 64 or more; larger ones are reduced by a whole factor, "
             "and keypoints are in the image's own pixels. 0 never reduces.");
 }
 

@@ -118,7 +118,7 @@ void bindMatcher(nb::module_& m)
                     "Copies of the descriptors added, an array an image.");
     method(cls, "resetCost", &Matcher::resetCost, "Begins a new count for matchCost().");
     method(cls, "clear", &Matcher::clear, "Forgets all train descriptors.");
-    method(cls, "getThresholds", &Matcher::getThresholds, "Of THRESHOLD, one a level.");
+    method(cls, "getThresholds", &Matcher::getThresholds, "Thresholds of THRESHOLD, one a level.");
     method(cls, "levelSizes", &Matcher::levelSizes,
             "Bytes of each level, coarse first; empty while a matcher created without them has seen no "
             "descriptors.");

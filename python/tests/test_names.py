@@ -90,7 +90,7 @@ class Names(unittest.TestCase):
         shown = pydoc.plain(pydoc.render_doc(opencv_iib.HessianDetector))
         shown = re.sub(r'[\s|]+', ' ', shown).replace('( ', '(')  # Python 3.13 breaks long lines
         self.assertRegex(shown, r"HessianDetector\(maxFeatures: '?int'? = 1000, threshold: '?float'? = 0.0, scales: '?int'? = 5, sigma: '?float'? = 2.2, ")
-        self.assertRegex(shown, r"setSigma\(self, sigma: '?float'?\) -> '?None'? Of the smallest scale in pixels, 1.5 to 8\. ")
+        self.assertRegex(shown, r"setSigma\(self, sigma: '?float'?\) -> '?None'? Sigma of the smallest scale in pixels, 1.5 to 8\. ")
 
     def test_help_and_star_import_see_the_classes(self):
         names = {}

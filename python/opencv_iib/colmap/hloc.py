@@ -1,4 +1,4 @@
-"""From a COLMAP database to the HDF5 files of hloc (Hierarchical-Localization)."""
+"""Exports a COLMAP database to the HDF5 files of hloc (Hierarchical-Localization)."""
 from __future__ import annotations
 
 import os

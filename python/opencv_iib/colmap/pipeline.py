@@ -1,4 +1,4 @@
-"""From a folder of images to a database for ``colmap mapper``."""
+"""Makes a database for ``colmap mapper`` of a folder of images."""
 from __future__ import annotations
 
 import dataclasses
@@ -34,7 +34,7 @@ Pairs = tuple[Iterator[tuple[int, int]], Optional[int]]  # of image ids, and how
 
 @dataclasses.dataclass(frozen=True)
 class Options:
-    """What build_database does, with the names and values of the command line."""
+    """Options of build_database, with the names and values of the command line."""
 
     features: FeatureOptions = FeatureOptions()
     camera_model: str = 'SIMPLE_RADIAL'  #: one of database.CAMERA_MODELS
@@ -66,7 +66,7 @@ class Options:
         return [(folder, Camera.parse(camera)) for folder, camera in ([] if self.camera is None else [('', self.camera)]) + texts]
 
     def _settings(self) -> dict[str, Any]:
-        """What a database depends on, with one text for each meaning. Masks are part of the images' stamps."""
+        """The settings that a database depends on, equal for equal meaning. Masks are part of the images' stamps."""
         return {**vars(self), **vars(self.features), 'features': None, 'mask': None, 'pairs': os.path.basename(self.pairs), 'camera': None,
                 'camera_of': sorted(f'{folder}={camera}' for folder, camera in self._cameras())}
 

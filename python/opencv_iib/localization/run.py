@@ -59,7 +59,7 @@ def find_camera(data: bytes, width: int, height: int, known: Sequence[Camera] = 
 
 @functools.lru_cache
 def _common_camera(cameras: tuple[Camera, ...]) -> Optional[Camera]:
-    """Of cameras of one size the one of the middle focal length, if all project the image's corners to nearly the same places."""
+    """The camera of the middle focal length, if all project the image's corners to nearly the same places; None otherwise."""
     if not cameras:
         return None
     middle = sorted(cameras, key=lambda camera: camera.params[0])[len(cameras) // 2]
