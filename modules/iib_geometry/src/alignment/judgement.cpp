@@ -2,18 +2,16 @@
 #include "judgement.hpp"
 
 #include "opencv2/iib/alignment.hpp"
-#include "sensor_marks.hpp"
-#include "../verdict/overlay.hpp"
 #include "../verdict/parallax.hpp"
-#include "../verdict/spread.hpp"
+#include "sensor_marks.hpp"
 
 namespace cv::iib {
 namespace {
 
 const double MOST_PARALLAX = .25;  // of the places that agree may move as if the camera had moved
-const double LEAST_PARALLAX = 6;   // working pixels: shadows of another light move by less
+const double LEAST_PARALLAX = 6;   // working pixels; shadows move by less
 const double MOST_ERROR = .25;     // of the image's diagonal
-const double LEAST_TOGETHER = .6;  // of the matches of a part that moves otherwise
+const double LEAST_TOGETHER = .6;  // of the matches of a part that moves as one
 
 const char* const NAMES[] = {"a translation", "a similarity", "an affine transform", "a homography"};
 
@@ -32,7 +30,7 @@ struct Parts
     }
 };
 
-//! The matches beside a transform by so much, working pixels, or more, that the camera's motion explains.
+//! The matches beside a transform by a distance, working pixels, or more, that the camera's motion explains.
 Verdict::Marks movedBeside(const FittedTransform& fitted, const Evidence& evidence, double distance)
 {
     const AlignedPoints& points = evidence.points;
@@ -40,17 +38,17 @@ Verdict::Marks movedBeside(const FittedTransform& fitted, const Evidence& eviden
             within(std::max(2 * fitted.limit, distance), fitted.fit.squared), fitted.limit, evidence.verdict);
 }
 
-//! Whether a transform of more freedom is that of another part of the images than the one in which the simple one has its matches.
+//! Whether the richer transform belongs to another part of the images, and the simple one to a place of its own.
 bool isElsewhere(const FittedTransform& richer, const FittedTransform& simple, const Evidence& evidence)
 {
-    return isOfAnotherPart(richer, simple) && simple.isCertain(evidence.verdict, evidence.tried) &&
+    return isOfAnotherPart(richer, simple) && simple.isSignificant(evidence) &&
            Parts(simple, evidence).spread.isPlace(simple.count());
 }
 
 std::string reasonAgainstModel(
         const std::vector<FittedTransform>& all, size_t judged, const Evidence& evidence)
 {
-    if (!isBetter(all.back(), all[judged]) || !all.back().isCertain(evidence.verdict, evidence.tried) ||
+    if (!isBetter(all.back(), all[judged]) || !all.back().isSignificant(evidence) ||
             isElsewhere(all.back(), all[judged], evidence))
         return "";
     size_t k = judged + 1;
@@ -64,19 +62,20 @@ std::string reasonAgainstModel(
 
 std::string reasonOfChance(const FittedTransform& fitted)
 {
-    return format("the transform that agrees best has %d of %d matches, no more than chance may give: "
-                  "the images may not show the same",
+    return format("the transform that agrees best has %d of %d matches, no more than chance may give: the "
+                  "images may not show the same",
             fitted.count(), fitted.problem.size());
 }
 
-//! Whether most matches agree with one similarity, as a part that moved or a second plane has it and a scene with depth has not.
+//! Whether most matches agree with one similarity: a part that moved or a second plane, not a scene with depth.
 bool isOneMotion(const Verdict::Marks& moved, const Evidence& evidence)
 {
-    return FittedTransform(marked(evidence.points, moved), ALIGN_SIMILARITY).count() >
-           LEAST_TOGETHER * countOf(moved);
+    const int count = countOf(moved);
+    return count > 0 &&
+           FittedTransform(marked(evidence.points, moved), ALIGN_SIMILARITY).count() > LEAST_TOGETHER * count;
 }
 
-//! What moves otherwise than the transform: a camera that moved, or a part of what it sees.
+//! Matches beside the transform: the camera moved, or a part of the scene did.
 void judgeMotion(const FittedTransform& fitted, const Evidence& evidence, Judgement& judgement)
 {
     const Verdict& verdict = evidence.verdict;
@@ -114,46 +113,45 @@ Judgement judge(
         const std::vector<FittedTransform>& all, size_t judged, const Evidence& evidence, const Mat& errors)
 {
     const FittedTransform& fitted = all[judged];
+    const auto refused = [](const std::string& why) { return Judgement{why, false, ""}; };
     if (!fitted.exists())
-        return {"the images have too few matches", false, ""};
+        return refused("the images have too few matches");
     Judgement judgement = {reasonAgainstModel(all, judged, evidence), true, ""};
     if (!judgement.against.empty())
         return judgement;
-    const Parts parts(fitted, evidence);
-    if (!fitted.isCertain(evidence.verdict, evidence.tried))
-        return {reasonOfChance(fitted), false, ""};
+    if (!fitted.isSignificant(evidence))
+        return refused(reasonOfChance(fitted));
     const FittedTransform& richest =
             all.back().exists() && !isOfAnotherPart(all.back(), fitted) ? all.back() : fitted;
     judgeMotion(richest, evidence, judgement);
     if (!judgement.against.empty())
         return judgement;
     if (areOfTheSensor(fitted, evidence))
-        return {"the matches are single pixels that stay where they are: hot pixels or dust of the camera, "
-                "while larger points "
-                "moved; mask or correct them",
-                false, ""};
+        return refused(
+                "the matches are single pixels that stay where they are, while larger points moved: hot "
+                "pixels or dust of the camera; mask or correct them");
+    const Parts parts(fitted, evidence);
     if (isOverlay(parts.reference, parts.image))
-        return {"the images are equal to the pixel in some parts and differ in the others: a logo, a caption "
-                "or a frame "
-                "lies over both, or a part of the vehicle shows; mask it",
-                false, ""};
+        return refused(
+                "the images are equal to the pixel in some parts and differ in the others: a logo, a caption "
+                "or a frame lies over both, or a part of the vehicle shows; mask it");
     const Spread& spread = parts.spread;
-    if (!spread.isPlace(fitted.count()) && !spread.isEverywhere())
-        return {format("the images agree in small parts alone, with %d matches over %.0f %% of what both "
-                       "could show: too "
-                       "little to tell a place from a logo or a caption",
-                        fitted.count(), 100 * std::min(spread.area, spread.whole)),
-                false, ""};
-    if (!(norm(errors, NORM_INF) < MOST_ERROR * evidence.pair.imageDiagonal()))
-        return {format("%d matches agree, but they leave the image's corners uncertain by a quarter of its "
-                       "size",
-                        fitted.count()),
-                false, ""};
+    const bool isSmall = !spread.isPlace(fitted.count()) && !spread.isEverywhere(),
+               isUncertain = !(norm(errors, NORM_INF) < MOST_ERROR * evidence.pair.imageDiagonal());
+    if (isSmall)
+        return refused(format("the images agree in small parts alone, with %d matches over %.0f %% of what "
+                              "both could show: too little to tell a place from a logo or a caption",
+                fitted.count(), 100 * std::min(spread.area, spread.whole)));
+    if (isUncertain)
+        return refused(
+                format("%d matches agree, but they leave the image's corners uncertain by a quarter of "
+                       "its size",
+                        fitted.count()));
     if (!spread.isEverywhere() && judgement.note.empty())
-        judgement.note = format(
-                "the images agree in one part of %.0f %% of what both could show; elsewhere the transform is "
-                "extrapolated",
-                100 * std::min(spread.area, 1.));
+        judgement.note =
+                format("the images agree in one part of %.0f %% of what both could show; elsewhere the "
+                       "transform is extrapolated",
+                        100 * std::min(spread.area, 1.));
     return judgement;
 }
 
