@@ -24,8 +24,8 @@ size_t simplestTrue(const std::vector<FittedTransform>& all, const Evidence& evi
 Judgement judge(
         const std::vector<FittedTransform>& all, size_t judged, const Evidence& evidence, const Mat& errors);
 
-/** Displacement of a part of the images beside the transform, such as moved shadows or depth, working pixels: the root of its mean
-square. 0 if the part is too small, or is displaced by as much as parallax. */
+/** Displacement of a part of the images beside the transform, such as moved shadows or depth, working pixels: two thirds of its matches are
+nearer. 0 if the part is too small, or is one motion that judge() has a note about. */
 double deviationBeside(const FittedTransform& fitted, const Evidence& evidence);
 
 }  // namespace cv::iib

@@ -31,12 +31,12 @@ than 1024 pixels are reduced, and in a second attempt those of more than 512 pix
 matches that agree are then refined at full size, if the images are sharp there. The result does not depend on the number of threads.
 
 There is no transform, and `reason` says why, where
-- the matches that agree are not significant (logFalseAlarms);
+- the matches that agree are not significant (logFalseAlarms), which may be because most of an image is black or white;
 - a model of more freedom agrees significantly better;
 - the camera moved through a scene with depth (parallax): matches in other places lie beside the transform, along lines through one point;
 - the images are equal to the pixel in some parts and differ in the others, such as captions, a frame or a part of a vehicle;
 - the matches are single pixels that do not move, such as hot pixels;
-- the matches lie in small parts alone, such as a logo: neither all over the part that both images show, nor in one place. A place is
+- the matches lie in small parts alone, such as a logo or a narrow overlap: neither all over the part that both images show, nor in one place. A place is
   a connected group of 15 of 192 cells with 80 matches;
 - the standard deviation of a corner is more than a quarter of the image's diagonal.
 
@@ -53,7 +53,7 @@ The verdict does not depend on the images' sizes. Where a part moved otherwise, 
     the likelihood of the matches' errors (compare Torr 1998), or that of the static part if a part of the scene moved
 @param error 4 x 1, CV_64F, pixels of the reference: standard deviations of the image's corners (top left, top right, bottom right, bottom left), each
     the root of both coordinates' variances together. They include the matches' noise, disagreement among parts of the image, and resampling of patches.
-    They include the displacement of a part beside the transform, such as moved shadows or depth, if it is less than parallax and has a quarter as many places as agree
+    They include the displacement of a part beside the transform, such as moved shadows or depth, if it has an eighth as many places as agree
 @param matches N x 4, CV_32F: the matches that agree with the transform, or with the best refused one: x and y in the reference, x and y in the image,
     pixels
 @param reason if not null: why there is no transform, a sentence; empty if there is one
