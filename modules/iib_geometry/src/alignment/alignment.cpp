@@ -12,8 +12,8 @@ namespace {
 
 const int WORKING_SIZE = 1024;    // as HessianDetector has it
 const int FEATURES = 2000;        // of a view
-const int MOST_IMPROVED = 3;      // times
-const double MOST_TILT = 4;       // that models with a shear are searched for
+const int MOST_IMPROVED = 3;      // rounds of improve()
+const double MOST_TILT = 4;       // of the views that models with a shear are searched in
 const double LEAST_REFINED = .5;  // of the matches that agree at the working size
 
 //! Pixels of the longer side at which upright images are matched, one after the other.
@@ -21,44 +21,34 @@ std::vector<int> workingSizes(const Size& first, const Size& second)
 {
     if (std::max({first.width, first.height, second.width, second.height}) <= WORKING_SIZE / 2)
         return {WORKING_SIZE};
-    return {WORKING_SIZE,
-            WORKING_SIZE / 2};  // blurred images, as of a focus stack, are sharper at half the size
+    return {WORKING_SIZE, WORKING_SIZE / 2};  // at half the size, blurred images (a focus stack) are sharper
 }
 
-//! What images matched in one pair of views tell, in the images' own pixels.
+//! The result of one pair of views, in the images' own pixels.
 struct Answer
 {
     Judgement judgement;
     Mat agreeing;       //!< as alignImages returns matches
-    Matx33d transform;  //!< that most of them agree with, also where it is refused
+    Matx33d transform;  //!< the best one, also where it is refused
     Mat error;
-    int simplest = 0;  //!< AlignmentModel
+    int simplest = -1;  //!< AlignmentModel
 
     bool found() const { return judgement.against.empty(); }
 };
 
-std::vector<Point2d> agreeing(const Mat& points, const Verdict::Marks& agree)
-{
-    std::vector<Point2d> chosen;
-    for (int i = 0; i < points.rows; i++)
-        if (agree[i])
-            chosen.push_back(points.at<Point2d>(i));
-    return chosen;
-}
-
-//! Matches of one size, the transform that they have, how far off it may be, and whether it is true.
+//! The matches of one size, their transform, its errors and the verdict.
 struct Alignment
 {
     AlignedPoints points;
     Evidence evidence;
     std::vector<FittedTransform> all;
     size_t best;
-    double beside;  //!< what parts of the images differ by from the transform, working pixels
+    double beside;  //!< as deviationBeside() returns it
     Mat errors;     //!< working pixels
     Judgement judgement;
 
-    /** @param isBeside the same, where it is known; below 0: the matches show it.
-    @param pixel in which the matches were refined, working pixels. */
+    /** @param isBeside `beside` if it is known, else below 0.
+    @param pixel working pixels per pixel in which the matches were refined. */
     Alignment(const AlignedPoints& matched, const WorkingPair& pair, int model, int tried, double isBeside,
             double pixel)
         : points(matched), evidence(points, pair, tried),
@@ -70,7 +60,7 @@ struct Alignment
             errors = cornerErrors(fitted(), points, pair.imageCorners(), beside, pixel);
         judgement = judge(all, best, evidence, errors);
         if (judgement.against.empty() && tried > 1 &&
-                areOneStructure(agreeing(points.reference, fitted().agree)))
+                areOneStructure(marked(points, fitted().agree).reference.reshape(2)))
             judgement = {
                     "the images share one structure that looks the same in some view, such as a round spot",
                     false, ""};
@@ -84,9 +74,8 @@ struct Alignment
     {
         const WorkingPair& pair = evidence.pair;
         Answer answer = {judgement, pair.inPixels(points, fitted().agree), Matx33d(), Mat()};
-        if (!fitted().exists())
-            return answer;
-        answer.transform = pair.inPixels(fitted().transform());
+        if (fitted().exists())
+            answer.transform = pair.inPixels(fitted().transform());
         if (!answer.found())
             return answer;
         answer.error = Mat(errors * pair.inPixels(1));
@@ -105,10 +94,9 @@ Answer answerOf(const WorkingPair& pair, int model, int tried)
     if (!first.judgement.against.empty() || !pair.isReduced())
         return first.inPixels(model);
     const FittedTransform& fitted = first.fitted();
-    // Only those that agree are refined.
     const Alignment again(pair.refined(first.points, fitted.agree, fitted.transform()), pair, model, tried,
             first.beside, 1 / pair.inPixels(1));
-    // Else they are too blurred, or sharp in a part alone.
+    // Images that are blurred, or sharp in one part alone, refine too few matches at full size.
     const bool isFiner = again.fitted().count() > LEAST_REFINED * fitted.count() && again.judgement.isLast;
     return (isFiner ? again : first).inPixels(model);
 }
@@ -134,24 +122,22 @@ public:
         if (reason)
             *reason = best.judgement.against;
         if (simplest)
-            *simplest = best.found() ? best.simplest : -1;
+            *simplest = best.simplest;
         if (note)
             *note = best.judgement.note;
-        if (best.found())
-        {
-            Mat(best.transform).copyTo(transform);
-            if (error.needed())
-                best.error.copyTo(error);
-            return true;
-        }
         clear(transform);
         clear(error);
-        return false;
+        if (!best.found())
+            return false;
+        Mat(best.transform).copyTo(transform);
+        if (error.needed())
+            best.error.copyTo(error);
+        return true;
     }
 
 private:
-    /** Keeps the best answer at all working sizes, up to the last one that is needed. What fewer matches agree with than with one that
-    was refused, such as that of a logo, is none. */
+    /** Keeps the best answer of all working sizes, up to the size that decides. An answer with fewer matches than a refused one, such as a
+    logo's, does not count. */
     template <typename PairOf>
     void attempt(PairOf pairOf, const ImageViews& second, int tried, Answer& best) const
     {
@@ -166,7 +152,7 @@ private:
         }
     }
 
-    //! In views that images rotated, zoomed or tilted against each other are alike in, if they are.
+    //! Searches for views in which rotated, zoomed or tilted images look alike.
     void search(const ImageViews& second, Answer& best) const
     {
         if (best.judgement.isLast)
@@ -185,8 +171,8 @@ private:
                 });
     }
 
-    /** Again in the views of the transform that was found, as long as these are others. Where the answer was a refusal, too: matches in views that
-    fit badly may lie as if the camera had moved. */
+    /** Matches again in the views of the transform that was found, while they differ from the last ones. This includes a refusal: in views that
+    fit badly, matches may lie as if the camera had moved. */
     void improve(const ImageViews& second, Matx33d map, int tried, Answer& best) const
     {
         for (int round = 0; round < MOST_IMPROVED; round++)

@@ -5,9 +5,9 @@
 
 namespace cv::iib {
 
-/** Standard deviations of the places of the image's corners, 4 x 1, CV_64F, working pixels.
-@param beside what parts of the images differ by from the transform.
-@param pixel in which the matches were refined, working pixels. */
+/** Standard deviations of the image's corners in the reference, 4 x 1, CV_64F, working pixels.
+@param beside displacement of a part of the images beside the transform (deviationBeside).
+@param pixel working pixels per pixel in which the matches were refined. */
 Mat cornerErrors(const FittedTransform& fitted, const AlignedPoints& points,
         const std::vector<Point2d>& corners, double beside, double pixel);
 

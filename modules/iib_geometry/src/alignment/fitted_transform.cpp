@@ -8,14 +8,13 @@
 namespace cv::iib {
 namespace {
 
-const double LEAST_SCALE = .25;  // by which matches count as agreeing, working pixels
-/* By which a model that is true is better than one that is not, as logarithms of likelihoods, for each number that it has more, and for each
-match. Noise and bent lenses have up to 3.9 of numbers, or .23 of matches; untrue models whose errors are underestimated 5.3 and .29
-(103 pairs under other light, moved by transforms of each kind). */
+const double LEAST_SCALE = .25;  // of the inliers' noise, working pixels
+/* Log likelihood that refutes a simpler model, per additional parameter and per inlier. True models gain up to 3.9 per parameter or .23 per inlier
+by noise and lens distortion; untrue ones with underestimated errors gain 5.3 and .29 (103 pairs under other light, each model). */
 const double LEAST_GAIN = 4.5, LEAST_GAIN_OF_MATCH = .24;
-const double LEAST_LOSS = .1;  // of a match, by which a transform of something else is worse
+const double LEAST_LOSS = .1;  // log likelihood per inlier that a transform of another part loses
 
-//! The derivative at the origin as a transform of less freedom has it.
+//! The affine part at the origin, reduced to a model.
 Matx33d simplified(const Matx33d& model, int kind)
 {
     Matx33d affine = affineAt(model, Point2d());
@@ -30,22 +29,20 @@ Matx33d simplified(const Matx33d& model, int kind)
     return affine;
 }
 
-std::vector<double> losses(const FittedTransform& fitted, double scale)
+//! Log likelihood that the richer transform gains on each match.
+std::vector<double> gains(const FittedTransform& richer, const FittedTransform& simple)
 {
+    const double scale2 = square(richer.limit / 3);
+    const auto loss = [&](double squared) { return std::log1p(std::min(squared / scale2, FARTHEST)); };
     std::vector<double> result;
-    for (double squared : fitted.fit.squared)
-        result.push_back(std::log1p(std::min(squared / square(scale), FARTHEST)));
+    for (size_t i = 0; i < simple.fit.squared.size(); i++)
+        result.push_back(loss(simple.fit.squared[i]) - loss(richer.fit.squared[i]));
     return result;
 }
 
-//! By how much the richer transform explains each match better.
-std::vector<double> gains(const FittedTransform& richer, const FittedTransform& simple)
+int moreParameters(const FittedTransform& richer, const FittedTransform& simple)
 {
-    std::vector<double> result = losses(simple, richer.limit / 3);
-    const std::vector<double> less = losses(richer, richer.limit / 3);
-    for (size_t i = 0; i < result.size(); i++)
-        result[i] -= less[i];
-    return result;
+    return richer.problem.parameters() - simple.problem.parameters();
 }
 
 }  // namespace
@@ -58,9 +55,8 @@ const char* nameOf(int model)
 
 FittedTransform::FittedTransform(const AlignedPoints& points, int kind)
     : model(kind), problem(points.reference, points.image, kind), fit(robustFit(problem, 0)),
-      limit(3 * std::max(fit.scale, LEAST_SCALE))
+      limit(3 * std::max(fit.scale, LEAST_SCALE)), agree(within(limit, fit.squared))
 {
-    agree = within(limit, fit.squared);
     agree.resize(problem.size());
 }
 
@@ -75,6 +71,16 @@ FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const Fi
     agree = within(limit, fit.squared);
 }
 
+bool FittedTransform::isSignificant(const Evidence& evidence) const
+{
+    const Verdict& verdict = evidence.verdict;
+    const auto errorOf = [&](int i, int j) { return problem.squaredError(fit.model, i, j); };
+    return verdict.logFalseAlarms(fit.squared, errorsOfWrongMatches(verdict, errorOf), Verdict::FROM_POINT,
+                   problem.sampleSize(), {.5 * limit, limit, 2 * limit, 4 * limit}) +
+                   std::log10((double)evidence.tried) <
+           Verdict::CERTAIN;
+}
+
 AlignedPoints marked(const AlignedPoints& points, const Verdict::Marks& marks)
 {
     AlignedPoints some;
@@ -83,21 +89,8 @@ AlignedPoints marked(const AlignedPoints& points, const Verdict::Marks& marks)
         {
             some.reference.push_back(points.reference.row((int)i));
             some.image.push_back(points.image.row((int)i));
-            some.sizes.push_back(points.sizes[i]);
         }
     return some;
-}
-
-bool FittedTransform::isCertain(const Verdict& verdict, int tried) const
-{
-    std::vector<double> limits;
-    for (double times : {.5, 1., 2., 4.})
-        limits.push_back(times * limit);
-    const auto errorOf = [&](int i, int j) { return problem.squaredError(fit.model, i, j); };
-    return verdict.logFalseAlarms(fit.squared, errorsOfWrongMatches(verdict, errorOf), Verdict::FROM_POINT,
-                   problem.sampleSize(), limits) +
-                   std::log10((double)tried) <
-           Verdict::CERTAIN;
 }
 
 std::vector<FittedTransform> fittedTransforms(const AlignedPoints& points, int simplest)
@@ -113,8 +106,7 @@ double gainOf(const FittedTransform& richer, const FittedTransform& simple)
     if (!richer.exists())
         return 0;
     std::vector<double> each = gains(richer, simple);
-    // So many numbers more fit as many coordinates of wrong matches exactly.
-    const int more = richer.problem.parameters() - simple.problem.parameters();
+    const int more = moreParameters(richer, simple);
     const auto last = each.begin() + std::min<size_t>(more, each.size());
     std::partial_sort(each.begin(), last, each.end(), std::greater<double>());
     return std::accumulate(last, each.end(), 0.) / more;
@@ -123,8 +115,7 @@ double gainOf(const FittedTransform& richer, const FittedTransform& simple)
 bool isBetter(const FittedTransform& richer, const FittedTransform& simple)
 {
     const double gain = gainOf(richer, simple);
-    const int more = richer.problem.parameters() - simple.problem.parameters();
-    return gain > LEAST_GAIN && gain * more > LEAST_GAIN_OF_MATCH * richer.count();
+    return gain > LEAST_GAIN && gain * moreParameters(richer, simple) > LEAST_GAIN_OF_MATCH * richer.count();
 }
 
 bool isOfAnotherPart(const FittedTransform& richer, const FittedTransform& simple)

@@ -7,52 +7,64 @@
 
 namespace cv::iib {
 
-//! Of an AlignmentModel, but ALIGN_AUTO.
+//! The matches of two images, and what their transforms are judged by. Errors are distances in the reference.
+struct Evidence
+{
+    const AlignedPoints& points;
+    const WorkingPair& pair;
+    int tried;  //!< number of view pairs in which the images were matched
+    Verdict verdict;
+
+    Evidence(const AlignedPoints& matched, const WorkingPair& images, int views)
+        : points(matched), pair(images), tried(views), verdict(matched.image, matched.reference)
+    {
+    }
+};
+
+//! @param model AlignmentModel except ALIGN_AUTO.
 const char* nameOf(int model);
 
-//! A transform that was fitted to two images' matches, in working pixels, and which of them agree with it.
+//! A transform fitted to the matches of two images, in working pixels, and the matches that agree with it.
 struct FittedTransform
 {
     int model;  //!< AlignmentModel
     PlanarProblem problem;
     Fit<PlanarProblem> fit;
+    double limit;  //!< largest distance of a match that agrees
     Verdict::Marks agree;
-    double limit;  //!< of the distances of matches that agree
 
-    //! That most matches agree with.
+    //! The transform with which most matches agree.
     FittedTransform(const AlignedPoints& points, int model);
 
-    //! Near a transform of more freedom.
+    //! A transform with less freedom, fitted from a richer one.
     FittedTransform(const AlignedPoints& points, int model, const FittedTransform& richer);
 
     bool exists() const { return !fit.squared.empty(); }
     int count() const { return (int)std::count(agree.begin(), agree.end(), true); }
     Matx33d transform() const { return problem.inPixels(fit.model); }
 
-    //! @param tried number of views in which the images were matched.
-    bool isCertain(const Verdict& verdict, int tried) const;
+    bool isSignificant(const Evidence& evidence) const;
 };
 
-//! The matches that are marked.
 AlignedPoints marked(const AlignedPoints& points, const Verdict::Marks& marks);
 
-//! Transforms of a kind and of all kinds with more freedom, the one with most freedom last.
+//! The simplest model and all richer ones; the homography is last.
 std::vector<FittedTransform> fittedTransforms(const AlignedPoints& points, int simplest);
 
-/** By how much a transform of more freedom explains the matches better than noise and a few wrong matches would let it, by the likelihood of their
-errors, as Cauchy's loss under the scale of the richer one has it: for each number that it has more. */
+/** Log likelihood that a richer transform gains per additional parameter, by Cauchy's loss under the richer one's scale. The largest gains are
+left out, as many as there are additional parameters: they may be wrong matches that the richer transform fits exactly. */
 double gainOf(const FittedTransform& richer, const FittedTransform& simple);
 
 const double NEEDED_GAIN = 2;  // of a true transform that needs its freedom
 
-//! Whether the simple transform is refuted by that, though lenses bend images a little.
+//! Whether the gain refutes the simple transform. Noise and lens distortion gain less.
 bool isBetter(const FittedTransform& richer, const FittedTransform& simple);
 
-/** Whether the richer transform is that of something else: it moves away from the matches that agree with the simple one. A transform of
-more freedom that is true comes nearer to them. */
+/** Whether the richer transform belongs to another part of the images: it fits the inliers of the simple transform worse. A true richer model
+fits them better. */
 bool isOfAnotherPart(const FittedTransform& richer, const FittedTransform& simple);
 
-//! The AlignmentModel of least freedom that explains the matches of a transform as well.
+//! The AlignmentModel of least freedom that explains the matches as well.
 int simplestModel(const FittedTransform& fitted, const AlignedPoints& points);
 
 }  // namespace cv::iib

@@ -2,18 +2,19 @@
 #include "judgement.hpp"
 
 #include "opencv2/iib/alignment.hpp"
-#include "sensor_marks.hpp"
-#include "../verdict/overlay.hpp"
 #include "../verdict/parallax.hpp"
-#include "../verdict/spread.hpp"
+#include "sensor_marks.hpp"
 
 namespace cv::iib {
 namespace {
 
 const double MOST_PARALLAX = .25;  // of the places that agree may move as if the camera had moved
-const double LEAST_PARALLAX = 6;   // working pixels: shadows of another light move by less
+const double LEAST_PARALLAX = 6;   // working pixels; shadows move by less
+const double LEAST_BESIDE = .125;  // of the places that agree: a part whose displacement is an error
 const double MOST_ERROR = .25;     // of the image's diagonal
-const double LEAST_TOGETHER = .6;  // of the matches of a part that moves otherwise
+const double LEAST_TOGETHER = .6;  // of the matches of a part that moves as one
+const double LEAST_OVERLAP = .3;   // of an image's area
+const double MOST_CLIPPED = .5;    // of an image's pixels are black or white
 
 const char* const NAMES[] = {"a translation", "a similarity", "an affine transform", "a homography"};
 
@@ -32,25 +33,27 @@ struct Parts
     }
 };
 
-//! The matches beside a transform by so much, working pixels, or more, that the camera's motion explains.
-Verdict::Marks movedBeside(const FittedTransform& fitted, const Evidence& evidence, double distance)
+/** The matches beside a transform by a distance, working pixels, or more, that the camera's motion explains. Where the transform has matches,
+too, the others are wrong: a letter that repeats is no camera's motion. */
+Verdict::Marks partsBeside(const FittedTransform& fitted, const Evidence& evidence, double distance)
 {
     const AlignedPoints& points = evidence.points;
-    return movedByParallax(points.reference, points.image, fitted.transform(),
+    const Verdict::Marks moved = movedByParallax(points.reference, points.image, fitted.transform(),
             within(std::max(2 * fitted.limit, distance), fitted.fit.squared), fitted.limit, evidence.verdict);
+    return evidence.verdict.elsewhere(moved, fitted.agree);
 }
 
-//! Whether a transform of more freedom is that of another part of the images than the one in which the simple one has its matches.
+//! Whether the richer transform belongs to another part of the images, and the simple one to a place of its own.
 bool isElsewhere(const FittedTransform& richer, const FittedTransform& simple, const Evidence& evidence)
 {
-    return isOfAnotherPart(richer, simple) && simple.isCertain(evidence.verdict, evidence.tried) &&
+    return isOfAnotherPart(richer, simple) && simple.isSignificant(evidence) &&
            Parts(simple, evidence).spread.isPlace(simple.count());
 }
 
 std::string reasonAgainstModel(
         const std::vector<FittedTransform>& all, size_t judged, const Evidence& evidence)
 {
-    if (!isBetter(all.back(), all[judged]) || !all.back().isCertain(evidence.verdict, evidence.tried) ||
+    if (!isBetter(all.back(), all[judged]) || !all.back().isSignificant(evidence) ||
             isElsewhere(all.back(), all[judged], evidence))
         return "";
     size_t k = judged + 1;
@@ -62,27 +65,43 @@ std::string reasonAgainstModel(
             NAMES[all[judged].model], nameOf(all[k].model), near(all[k]), near(all[judged]));
 }
 
-std::string reasonOfChance(const FittedTransform& fitted)
+//! Share of the pixels without detail, since the exposure was too short or too long.
+double clippedShare(const Mat& image)
 {
-    return format("the transform that agrees best has %d of %d matches, no more than chance may give: "
-                  "the images may not show the same",
-            fitted.count(), fitted.problem.size());
+    if (image.empty())
+        return 0;
+    const int depth = image.depth();
+    const double full = depth == CV_8U ? 255 : depth == CV_16U ? 65535 : norm(image, NORM_INF);
+    Mat exposed;
+    inRange(image.reshape(1), full * .02, full * .98, exposed);
+    return 1 - countNonZero(exposed) / (double)exposed.total();
 }
 
-//! Whether most matches agree with one similarity, as a part that moved or a second plane has it and a scene with depth has not.
+//! Why there are too few matches: an image's exposure, or else the given reason.
+Judgement refusedByFew(const WorkingPair& pair, std::string reason)
+{
+    for (int which : {0, 1})
+        if (const double clipped = clippedShare(pair.pixels(which)); clipped > MOST_CLIPPED)
+            reason = format(
+                    "%.0f %% of the %s is black or white, and too few matches agree elsewhere: align it "
+                    "through exposures between the two (align --chain)",
+                    100 * clipped, which ? "image" : "reference");
+    return {reason, false, ""};
+}
+
+//! Whether most matches agree with one similarity: a part that moved or a second plane, not a scene with depth.
 bool isOneMotion(const Verdict::Marks& moved, const Evidence& evidence)
 {
-    return FittedTransform(marked(evidence.points, moved), ALIGN_SIMILARITY).count() >
-           LEAST_TOGETHER * countOf(moved);
+    const int count = countOf(moved);
+    return count > 0 &&
+           FittedTransform(marked(evidence.points, moved), ALIGN_SIMILARITY).count() > LEAST_TOGETHER * count;
 }
 
-//! What moves otherwise than the transform: a camera that moved, or a part of what it sees.
+//! Matches beside the transform: the camera moved, or a part of the scene did.
 void judgeMotion(const FittedTransform& fitted, const Evidence& evidence, Judgement& judgement)
 {
     const Verdict& verdict = evidence.verdict;
-    Verdict::Marks moved = movedBeside(fitted, evidence, LEAST_PARALLAX);
-    // Where the transform has matches, too, the others are wrong: a letter that repeats is no camera's motion.
-    moved = verdict.elsewhere(moved, fitted.agree);
+    const Verdict::Marks moved = partsBeside(fitted, evidence, LEAST_PARALLAX);
     if (verdict.places(moved) <= MOST_PARALLAX * verdict.places(fitted.agree))
         return;
     if (isOneMotion(moved, evidence))
@@ -114,62 +133,76 @@ Judgement judge(
         const std::vector<FittedTransform>& all, size_t judged, const Evidence& evidence, const Mat& errors)
 {
     const FittedTransform& fitted = all[judged];
+    const auto refused = [](const std::string& why) { return Judgement{why, false, ""}; };
     if (!fitted.exists())
-        return {"the images have too few matches", false, ""};
+        return refusedByFew(evidence.pair, "the images have too few matches");
     Judgement judgement = {reasonAgainstModel(all, judged, evidence), true, ""};
     if (!judgement.against.empty())
         return judgement;
-    const Parts parts(fitted, evidence);
-    if (!fitted.isCertain(evidence.verdict, evidence.tried))
-        return {reasonOfChance(fitted), false, ""};
+    if (!fitted.isSignificant(evidence))
+        return refusedByFew(evidence.pair, format("the transform that agrees best has %d of %d matches, no "
+                                                  "more than chance may give: the "
+                                                  "images may not show the same",
+                                                   fitted.count(), fitted.problem.size()));
     const FittedTransform& richest =
             all.back().exists() && !isOfAnotherPart(all.back(), fitted) ? all.back() : fitted;
     judgeMotion(richest, evidence, judgement);
     if (!judgement.against.empty())
         return judgement;
     if (areOfTheSensor(fitted, evidence))
-        return {"the matches are single pixels that stay where they are: hot pixels or dust of the camera, "
-                "while larger points "
-                "moved; mask or correct them",
-                false, ""};
+        return refused(
+                "the matches are single pixels that stay where they are, while larger points moved: hot "
+                "pixels or dust of the camera; mask or correct them");
+    const Parts parts(fitted, evidence);
     if (isOverlay(parts.reference, parts.image))
-        return {"the images are equal to the pixel in some parts and differ in the others: a logo, a caption "
-                "or a frame "
-                "lies over both, or a part of the vehicle shows; mask it",
-                false, ""};
+        return refused(
+                "the images are equal to the pixel in some parts and differ in the others: a logo, a caption "
+                "or a frame lies over both, or a part of the vehicle shows; mask it");
     const Spread& spread = parts.spread;
-    if (!spread.isPlace(fitted.count()) && !spread.isEverywhere())
-        return {format("the images agree in small parts alone, with %d matches over %.0f %% of what both "
-                       "could show: too "
-                       "little to tell a place from a logo or a caption",
-                        fitted.count(), 100 * std::min(spread.area, spread.whole)),
-                false, ""};
-    if (!(norm(errors, NORM_INF) < MOST_ERROR * evidence.pair.imageDiagonal()))
-        return {format("%d matches agree, but they leave the image's corners uncertain by a quarter of its "
-                       "size",
-                        fitted.count()),
-                false, ""};
+    const bool isSmall = !spread.isPlace(fitted.count()) && !spread.isEverywhere(),
+               isUncertain = !(norm(errors, NORM_INF) < MOST_ERROR * evidence.pair.imageDiagonal());
+    const double overlap = std::min(parts.reference.share, parts.image.share);
+    if ((isSmall || isUncertain) && overlap < LEAST_OVERLAP)
+        return refused(
+                format("the images overlap by %.0f %% alone, and the %d matches there do not determine "
+                       "a transform: take images that share more",
+                        100 * overlap, fitted.count()));
+    if (isSmall)
+        return refused(format("the images agree in small parts alone, with %d matches over %.0f %% of what "
+                              "both could show: too little to tell a place from a logo or a caption",
+                fitted.count(), 100 * std::min(spread.area, spread.whole)));
+    if (isUncertain)
+        return refused(
+                format("%d matches agree, but they leave the image's corners uncertain by a quarter of "
+                       "its size",
+                        fitted.count()));
     if (!spread.isEverywhere() && judgement.note.empty())
-        judgement.note = format(
-                "the images agree in one part of %.0f %% of what both could show; elsewhere the transform is "
-                "extrapolated",
-                100 * std::min(spread.area, 1.));
+        judgement.note =
+                format("the images agree in one part of %.0f %% of what both could show; elsewhere the "
+                       "transform is extrapolated",
+                        100 * std::min(spread.area, 1.));
     return judgement;
 }
 
 double deviationBeside(const FittedTransform& fitted, const Evidence& evidence)
 {
     const Verdict& verdict = evidence.verdict;
-    Verdict::Marks moved = movedBeside(fitted, evidence, 0);
-    double sum = 0;
+    Verdict::Marks moved = partsBeside(fitted, evidence, 0), far = moved;
+    for (size_t i = 0; i < moved.size(); i++)
+        far[i] = moved[i] && fitted.fit.squared[i] >= square(LEAST_PARALLAX);
+    const bool isMotion = isOneMotion(far, evidence);  // the note of judgeMotion speaks of it
+    std::vector<double> squares;
     for (size_t i = 0; i < moved.size(); i++)
     {
-        moved[i] = moved[i] && fitted.fit.squared[i] < square(LEAST_PARALLAX);
-        sum += moved[i] ? fitted.fit.squared[i] : 0;
+        moved[i] = moved[i] && !(isMotion && far[i]);
+        if (moved[i])
+            squares.push_back(fitted.fit.squared[i]);
     }
-    return verdict.places(moved) > MOST_PARALLAX * verdict.places(fitted.agree)
-                   ? std::sqrt(sum / countOf(moved))
-                   : 0;
+    if (verdict.places(moved) <= LEAST_BESIDE * verdict.places(fitted.agree))
+        return 0;
+    const auto most = squares.begin() + squares.size() * 2 / 3;  // wrong matches are farther
+    std::nth_element(squares.begin(), most, squares.end());
+    return std::sqrt(*most);
 }
 
 }  // namespace cv::iib

@@ -9,9 +9,9 @@ namespace {
 
 const double STILL = .5;  // working pixels by which the image of the sensor moves at most
 const double MOST_AROUND =
-        .25;  // of a single pixel's height, in the four pixels beside it; of a sharp star .4
+        .25;  // of a single pixel's height, in the four pixels beside it; a sharp star has .4
 const double LEAST_SINGLE = .5;  // of the matches that agree
-const double MOST_LARGER = .5;   // of the share of single pixels that agree, that of larger points
+const double MOST_LARGER = .5;   // share of larger points that agree, over that of single pixels
 
 //! Whether the highest or lowest pixel at a point stands alone.
 bool isSinglePixel(const Mat& image, const Point2d& point)
@@ -30,10 +30,8 @@ bool isSinglePixel(const Mat& image, const Point2d& point)
     double height;
     Point top;
     minMaxLoc(heights(Rect(1, 1, 3, 3)), nullptr, &height, nullptr, &top);
-    top += Point(1, 1);
-    const double beside = heights.at<float>(top + Point(1, 0)) + heights.at<float>(top - Point(1, 0)) +
-                          heights.at<float>(top + Point(0, 1)) + heights.at<float>(top - Point(0, 1));
-    return beside / 4 < MOST_AROUND * height;
+    const Mat cross = (Mat_<float>(3, 3) << 0, 1, 0, 1, 0, 1, 0, 1, 0);
+    return heights(Rect(top, Size(3, 3))).dot(cross) / 4 < MOST_AROUND * height;
 }
 
 }  // namespace

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "evidence.hpp"
 #include "fitted_transform.hpp"
 
 namespace cv::iib {
 
-/** Whether the matches that agree are marks of the camera's sensor, such as hot pixels: single pixels that stay where they are, while hardly any
+/** Whether the matches that agree are marks of the sensor, such as hot pixels: single pixels that stay where they are, while hardly any
 larger point does. */
 bool areOfTheSensor(const FittedTransform& fitted, const Evidence& evidence);
 

@@ -4,8 +4,8 @@
 namespace cv::iib {
 namespace {
 
-const int LEAST_SIDE = 64;  // pixels that are left of a reduced image
-const int SMALL = 480;      // pixels of the longest side: views of a search below it are enlarged
+const int LEAST_SIDE = 64;  // pixels of the shorter side of a reduced image
+const int SMALL = 480;      // pixels of the longer side: smaller views of a search are enlarged
 
 int largestFactor(const Size& size) { return std::max(std::min(size.width, size.height) / LEAST_SIDE, 1); }
 
@@ -15,18 +15,9 @@ int factorFor(const Size& size, int workingSize)
             (std::max(size.width, size.height) + workingSize - 1) / workingSize, 1, largestFactor(size));
 }
 
-const int SAMPLES_ACROSS = 32;  // at which is asked what both images show
+const int SAMPLES_ACROSS = 32;  // of the grid that measures the area that both images show
 
 Point2d rowOf(const Mat& points, int i) { return points.at<Vec2d>(i); }
-
-//! Moves points, N x 2, CV_64F.
-Mat allMoved(const Matx33d& by, const Mat& points)
-{
-    Mat result = points.clone();
-    for (int i = 0; i < points.rows; i++)
-        result.at<Point2d>(i) = moved(by, rowOf(points, i));
-    return result;
-}
 
 }  // namespace
 
@@ -60,8 +51,7 @@ WorkingPair::WorkingPair(
 
 AlignedPoints WorkingPair::match() const
 {
-    AlignedPoints result = {
-            Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {seen_[0]->keypoints, seen_[1]->keypoints}, {}};
+    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {seen_[0]->keypoints, seen_[1]->keypoints}};
     const std::vector<DMatch> matches = matchesOf(*seen_[0], *seen_[1]);
     if (matches.empty())
         return result;
@@ -70,24 +60,20 @@ AlignedPoints WorkingPair::match() const
             points1, points2);
     points1.convertTo(result.reference, CV_64F);
     points2.convertTo(result.image, CV_64F);
-    for (const DMatch& match : matches)
-        result.sizes.push_back(result.keypoints[0][match.queryIdx].size);
     return result;
 }
 
 bool WorkingPair::isReduced() const
 {
-    const double largest = .9;  // of scales by which nothing is lost
-    const auto isSmall = [&](int i) {
-        return std::max(views_.views[i].scales[0], views_.views[i].scales[1]) < largest;
-    };
-    return isSmall(0) && isSmall(1);
+    const double largest = .9;  // scale at which hardly anything is lost
+    return std::all_of(std::begin(views_.views), std::end(views_.views),
+            [&](const View& view) { return std::max(view.scales[0], view.scales[1]) < largest; });
 }
 
 AlignedPoints WorkingPair::refined(
         const AlignedPoints& points, const std::vector<bool>& agree, const Matx33d& transform) const
 {
-    const double size = 10;  // pixels: the ratio of a match's sizes counts alone
+    const double size = 10;  // pixels: only the ratio of the two sizes counts
     const Matx33d toImage = inPixels(transform).inv();
     const ViewPair full = ViewPair::of(affineAt(toImage, Point2d(images_[0]->size()) / 2));
     Matx33d fromImage[2], toWorking[2];
@@ -101,7 +87,6 @@ AlignedPoints WorkingPair::refined(
     const Matx33d between = fromImage[1] * toImage * fromImage[0].inv();
     std::vector<KeyPoint> first, second;
     std::vector<DMatch> matches;
-    std::vector<float> sizes;
     for (size_t i = 0; i < agree.size(); i++)
     {
         if (!agree[i])
@@ -112,20 +97,17 @@ AlignedPoints WorkingPair::refined(
         first.emplace_back(Point2f(from), (float)size, 0.f);
         second.emplace_back(Point2f(to), (float)(size * norm(beside)), (float)angle);
         matches.emplace_back((int)matches.size(), (int)matches.size(), 0.f);
-        sizes.push_back(points.sizes[i]);
     }
     Mat points1, points2, similarities;
     refineMatches(
             *prepared[0], first, *prepared[1], second, matches, points1, points2, noArray(), similarities);
-    AlignedPoints result = {
-            Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {points.keypoints[0], points.keypoints[1]}, {}};
+    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {points.keypoints[0], points.keypoints[1]}};
     for (size_t i = 0; i < matches.size(); i++)
         if (similarities.at<float>((int)i) >= 0)
         {
             const Point2d from = points1.at<Point2f>((int)i), to = points2.at<Point2f>((int)i);
             result.reference.push_back(Mat(Vec2d(moved(toWorking[0], from))).t());
             result.image.push_back(Mat(Vec2d(moved(toWorking[1], to))).t());
-            result.sizes.push_back(sizes[i]);
         }
     return result;
 }
@@ -139,12 +121,13 @@ SharedPart WorkingPair::sharedPart(int which, const AlignedPoints& points, const
     const auto both = [&](const Point2d& point) {
         return images_[which]->shows(point) && images_[!which]->shows(moved(toOther, point));
     };
-    SharedPart part = {0, {}, {}, {}};
+    SharedPart part;
     const Size size = images_[which]->size();
     const double width = (double)size.width / SAMPLES_ACROSS, height = (double)size.height / SAMPLES_ACROSS;
     for (int row = 0; row < SAMPLES_ACROSS; row++)
         for (int column = 0; column < SAMPLES_ACROSS; column++)
             part.area += both({(column + .5) * width - .5, (row + .5) * height - .5}) ? width * height : 0;
+    part.share = part.area / size.area();
     for (const KeyPoint& keypoint : points.keypoints[which])
     {
         const Point2d point = moved(toImage, keypoint.pt);
@@ -194,15 +177,16 @@ double WorkingPair::inPixels(double distance) const
 
 Mat WorkingPair::inPixels(const AlignedPoints& points, const std::vector<bool>& agree) const
 {
-    Mat both, result(0, 4, CV_32F);
+    Mat both[2], all, result(0, 4, CV_32F);
     if (points.reference.empty())
         return result;
-    hconcat(allMoved(seen_[0]->fromImage.inv(), points.reference),
-            allMoved(seen_[1]->fromImage.inv(), points.image), both);
-    both.convertTo(both, CV_32F);
-    for (int i = 0; i < both.rows; i++)
+    perspectiveTransform(points.reference.reshape(2), both[0], seen_[0]->fromImage.inv());
+    perspectiveTransform(points.image.reshape(2), both[1], seen_[1]->fromImage.inv());
+    hconcat(both[0].reshape(1), both[1].reshape(1), all);
+    all.convertTo(all, CV_32F);
+    for (int i = 0; i < all.rows; i++)
         if (agree[i])
-            result.push_back(both.row(i));
+            result.push_back(all.row(i));
     return result;
 }
 

@@ -7,7 +7,7 @@ namespace cv::iib {
 namespace {
 
 const int TRIALS = 300;
-const int SAMPLE = 2;  // lines that meet in an epipole
+const int SAMPLE = 2;  // lines that determine an epipole
 
 Vec3d homogeneous(const Mat& points, int i)
 {
@@ -30,7 +30,7 @@ Verdict::Marks movedByParallax(const Mat& reference, const Mat& image, const Mat
         Vec3d there = transform * homogeneous(image, (int)i);
         there *= 1 / there[2];
         const Vec3d here = homogeneous(reference, (int)i);
-        // A wrong match, which points anywhere, comes as near to the line by this chance.
+        // The chance that a wrong match, whose direction is random, comes as near to the line.
         chances += 2 / CV_PI * std::asin(std::min(1., limit / norm(here - there)));
         all[i] = true;
         others.push_back((int)i);

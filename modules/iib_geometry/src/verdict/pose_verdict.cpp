@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace cv::iib {
 namespace {
 
 double square(double x) { return x * x; }
 
-//! That the epipolar line of a wrong match, which points anywhere, passes it within the limit, before or behind the camera.
+//! The chance that the epipolar line of a wrong match passes it within the limit, in front of the camera or behind it.
 double chanceOf(double limit, double parallax)
 {
     return std::asin(std::min(1., limit / parallax)) * 2 / CV_PI;
@@ -54,7 +55,7 @@ bool isDirectionCertain(const std::vector<double>& squared, const std::vector<do
     }
     const double chance = chances / std::max(count, 1.),
                  others = verdict.places(seen) - verdict.places(agree);
-    // Here the chance is so large that it counts that the others do not agree.
+    // The chance is so large here that the matches which do not agree count, too.
     return verdict.logFalseAlarms(seen, agree, matchesOfDirection, chance) + others * std::log10(1 - chance) <
            Verdict::CERTAIN;
 }
@@ -62,20 +63,19 @@ bool isDirectionCertain(const std::vector<double>& squared, const std::vector<do
 Verdict::Marks withinByMoreThanChance(
         const std::vector<double>& squared, const std::vector<double>& parallaxes, double limit)
 {
-    const double alike = 1.5;   // times longer or shorter
-    const double chance = .01;  // that as many of a kind are there
+    const double alike = 1.5;   // largest ratio of similar parallaxes
+    const double chance = .01;  // of as many wrong matches within the limit
     const Verdict::Marks all = within(limit, squared);
     Verdict::Marks marks = all;
     std::vector<size_t> order(squared.size());
-    for (size_t i = 0; i < order.size(); i++)
-        order[i] = i;
+    std::iota(order.begin(), order.end(), 0);
     std::stable_sort(
             order.begin(), order.end(), [&](size_t a, size_t b) { return parallaxes[a] < parallaxes[b]; });
     size_t begin = 0, end = 0;
     double near = 0,
-           expected = 0;  // of those alike: within the limit, and how many of the wrong ones should be
+           expected = 0;  // matches of similar parallax within the limit, and wrong ones expected there
     const auto add = [&](size_t i, double sign) {
-        const double each = chanceOf(limit, parallaxes[i]) / 2;  // before the camera
+        const double each = chanceOf(limit, parallaxes[i]) / 2;  // in front of the camera
         if (all[i])
             near += sign;
         else

@@ -7,19 +7,19 @@ namespace cv::iib {
 
 // Verdicts about a pose between two cameras, by the errors and the parallax of the matches, pixels.
 
-/** Whether more places agree with a pose than with another one, by one and by more than chance. Errors are cut off at four scales, which
-is a match more; the noise of matches that agree with both, as all of a plane do, is the chance.
+/** Whether more places agree with a pose than with another one, by one place and significantly. Errors are cut off at four scales, which counts as one
+match. The noise of matches that agree with both poses, as all matches of a plane do, is the chance.
 @param squared, otherSquared errors of the matches, pixels^2. */
 bool explainsMore(const std::vector<double>& squared, const std::vector<double>& otherSquared, double scale,
         const Verdict& verdict);
 
-/** Whether the direction of t is more than chance. Matches without parallax say nothing of it; of the others one whose parallax is
-much longer than the limit agrees with a wrong direction by the chance asin(limit / parallax) 2 / pi. */
+/** Whether the direction of t is significant. Matches without parallax tell nothing about it. A match whose parallax is much longer than the limit
+agrees with a wrong direction by the chance asin(limit / parallax) 2 / pi. */
 bool isDirectionCertain(const std::vector<double>& squared, const std::vector<double>& parallaxes,
         double limit, const Verdict& verdict);
 
-/** Matches within a limit, without those that are probably wrong: whose parallax is longer or shorter than that of most, and of whose
-like so many are not within the limit that the few that are may be there by chance. */
+/** Matches within a limit, without those that are probably wrong. Their parallax differs from that of most matches, and so many matches of
+similar parallax are beyond the limit that a few are within it by chance. */
 Verdict::Marks withinByMoreThanChance(
         const std::vector<double>& squared, const std::vector<double>& parallaxes, double limit);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "spread.hpp"
 
-#include <algorithm>
+#include <map>
 #include <set>
 
 #include "../precomp.hpp"
@@ -11,12 +11,17 @@ namespace cv::iib {
 namespace {
 
 const int CELLS_ACROSS = 8;
-const int LEAST_PLACE = 15, LEAST_MATCHES = 80;  // cells of a group: logos have fewer, or fewer matches
-const double LEAST_SPREAD = .12;                 // of what has points: a logo spans less
-const double LEAST_WHOLE = .05;                  // of what both images show, whether it has points or not
-/* Of the cells that matches of any points would be in, those that agreeing ones are in. Captions and logos at two ends of a picture
-have .2 at most, pairs under other light .41 at least. */
+const int LEAST_PLACE = 15, LEAST_MATCHES = 80;  // logos have fewer connected cells, or fewer matches
+const double LEAST_SPREAD = .12;                 // of the keypoints' hull; a logo spans less
+const double LEAST_WHOLE = .05;                  // of the shared area
+// Captions and logos at two ends of a picture have .2 at most, pairs under other light .41 at least.
 const double LEAST_SCATTER = .33;
+
+const double EXACT = 1. / 400;  // of a cell's side, .1 pixels of VGA: largest distance of equal points
+const double LEAST_EXACT =
+        .05;  // of the matches; still cameras in other light have fewer, or fewer unlike cells
+const double MOST_CHANGED = .15;  // of the pixel values' deviation: largest difference of equal points
+const double LEAST_UNLIKE = .4;  // of the cells with keypoints of both; a still camera before a crowd has .35
 
 typedef std::vector<Point2f> Points;
 
@@ -29,7 +34,7 @@ double areaOf(const Points& points)
     return contourArea(hull);
 }
 
-//! Takes the points at these indices out.
+//! Removes the points at these indices and returns them.
 Points taken(Points& points, std::vector<int> indices)
 {
     Points out;
@@ -42,10 +47,10 @@ Points taken(Points& points, std::vector<int> indices)
     return out;
 }
 
-//! The area that points span without the few that stretch it most, one after the other.
+//! Area of the hull without the few points that enlarge it most, removed one by one.
 double areaWithout(int few, Points points)
 {
-    Points outer;  // which are on the hull once the few before are out
+    Points outer;  // the hull, and the hulls that removing points uncovers
     std::vector<int> hull;
     for (int layer = 0; layer <= few && !points.empty(); layer++)
     {
@@ -56,13 +61,13 @@ double areaWithout(int few, Points points)
     for (; few > 0 && !outer.empty(); few--)
     {
         convexHull(outer, hull);
-        const auto areaWithoutOne = [&](int corner) {
+        std::vector<double> areas;
+        for (int corner : hull)
+        {
             Points others = outer;
             taken(others, {corner});
-            return areaOf(others);
-        };
-        std::vector<double> areas;
-        std::transform(hull.begin(), hull.end(), std::back_inserter(areas), areaWithoutOne);
+            areas.push_back(areaOf(others));
+        }
         taken(outer, {hull[size_t(std::min_element(areas.begin(), areas.end()) - areas.begin())]});
     }
     return areaOf(outer);
@@ -89,24 +94,28 @@ double scatterOf(const Points& agreeing, const Points& points)
     return (double)(matches.size() - std::count(matches.begin(), matches.end(), 0)) / std::max(expected, 1.);
 }
 
-//! Of square cells of this side.
+typedef std::pair<int, int> Cell;
+
+double sideOf(double area) { return std::sqrt(std::max(area, 1.) / Spread::CELLS); }
+
+Cell cellOf(const Point2f& p, double side) { return {cvFloor(p.x / side), cvFloor(p.y / side)}; }
+
+//! Number of cells in the largest connected group.
 int largestGroup(const Points& points, double side)
 {
-    std::set<std::pair<int, int>> cells;
+    std::set<Cell> cells;
     for (const Point2f& p : points)
-        cells.insert({cvFloor(p.x / side), cvFloor(p.y / side)});
+        cells.insert(cellOf(p, side));
     int largest = 0;
     while (!cells.empty())
     {
-        std::vector<std::pair<int, int>> group = {cells.extract(cells.begin()).value()};
+        std::vector<Cell> group = {cells.extract(cells.begin()).value()};
         for (size_t k = 0; k < group.size(); k++)
             for (int neighbour = 0; neighbour < 9; neighbour++)
-            {
-                const auto cell =
-                        cells.find({group[k].first + neighbour % 3 - 1, group[k].second + neighbour / 3 - 1});
-                if (cell != cells.end())
-                    group.push_back(cells.extract(cell).value());
-            }
+                if (const Cell cell = {group[k].first + neighbour % 3 - 1,
+                            group[k].second + neighbour / 3 - 1};
+                        cells.erase(cell))
+                    group.push_back(cell);
         largest = std::max(largest, (int)group.size());
     }
     return largest;
@@ -117,14 +126,12 @@ double ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
 }  // namespace
 
 Spread::Spread(const SharedPart& reference, const SharedPart& image, int sampleSize)
-    : connected(CELLS), area(0), whole(1), scatter(0)
 {
     for (const SharedPart* part : {&reference, &image})
     {
-        const double both = std::max(part->area, 1.);
-        connected = std::min(connected, largestGroup(part->agreeing, cellOf(both)));
+        connected = std::min(connected, largestGroup(part->agreeing, sideOf(part->area)));
         area = std::max(area, ratio(areaOf(part->agreeing), areaOf(part->points)));
-        whole = std::min(whole, areaWithout(sampleSize, part->agreeing) / both);
+        whole = std::min(whole, areaWithout(sampleSize, part->agreeing) / std::max(part->area, 1.));
         scatter = std::max(scatter, scatterOf(part->agreeing, part->points));
     }
 }
@@ -134,6 +141,31 @@ bool Spread::isPlace(int matches) const { return connected >= LEAST_PLACE && mat
 bool Spread::isEverywhere() const
 {
     return area >= LEAST_SPREAD && whole >= LEAST_WHOLE && scatter >= LEAST_SCATTER;
+}
+
+bool isOverlay(const SharedPart& reference, const SharedPart& image)
+{
+    const double side = sideOf(reference.area);
+    Scalar values, deviation;
+    meanStdDev(reference.values, values, deviation);
+    int exact = 0;
+    for (size_t i = 0; i < image.agreeing.size(); i++)
+        exact += norm(image.agreeing[i] - reference.agreeing[i]) < EXACT * side &&
+                 std::abs(image.values[i] - reference.values[i]) < MOST_CHANGED * deviation[0];
+    if (exact <= LEAST_EXACT * (double)image.agreeing.size())
+        return false;
+    std::map<Cell, int> cells;  // a bit for each list of points
+    const Points* const lists[] = {&reference.points, &image.points, &image.agreeing};
+    for (int list = 0; list < 3; list++)
+        for (const Point2f& p : *lists[list])
+            cells[cellOf(p, side)] |= 1 << list;
+    int both = 0, unlike = 0;
+    for (const auto& cell : cells)
+    {
+        both += (cell.second & 3) == 3;
+        unlike += cell.second == 3;
+    }
+    return unlike > LEAST_UNLIKE * both;
 }
 
 }  // namespace cv::iib

@@ -9,42 +9,42 @@
 
 namespace cv::iib {
 
-//! What one of two images has where the other one shows the same, in its pixels.
+//! The part of one image that the other one shows as well, in pixels of the first.
 struct SharedPart
 {
-    double area;                    //!< that both show and masks allow, pixels
-    std::vector<Point2f> points;    //!< that were looked for there
+    double area = 0;                //!< pixels that both images show and masks allow
+    double share = 0;               //!< of the image's pixels
+    std::vector<Point2f> points;    //!< keypoints there
     std::vector<Point2f> agreeing;  //!< matches that agree with a transform
-    std::vector<double> values;     //!< of the pixels where these are
+    std::vector<double> values;     //!< of the pixels at these matches
 };
 
-/** Whether matches that agree are of a place, or of a logo or a caption that different pictures have in common. Each number is of the image
-in which it says less, so that it does not matter which image is the reference. */
+/** Whether matches that agree show a place, or a logo or a caption that different pictures share. Each number is that of the image in which it
+says less, so the order of the images does not matter. */
 struct Spread
 {
-    /** Cells that touch each other and all hold matches that agree, of CELLS cells of the area that both show: the largest such group. A place is a
-    large group whatever lies beside it; captions are small groups. */
-    int connected;
-    //! Area that matches span, of the area that points span.
-    double area;
-    /** The same of all that both show, without the few matches that stretch it most: a transform bends towards as many wrong ones as determine
-    it. */
-    double whole;
-    double scatter;  //!< cells with matches, over those in which as many points would be
+    //! The largest connected group of cells with matches, of CELLS cells of the shared area. Captions are small groups.
+    int connected = CELLS;
+    double area = 0;  //!< of the matches' hull, over that of the keypoints' hull
+    /** The matches' hull over the shared area, without the few matches that enlarge it most: a transform bends towards as many wrong matches
+    as determine it. */
+    double whole = 1;
+    double scatter = 0;  //!< number of cells with matches, over the number that as many keypoints would be in
 
     static constexpr int CELLS = 192;
-
-    //! Pixels of a cell's side, of the area that both images show.
-    static double cellOf(double area) { return std::sqrt(std::max(area, 1.) / CELLS); }
 
     //! @param sampleSize matches that determine a transform.
     Spread(const SharedPart& reference, const SharedPart& image, int sampleSize);
 
-    //! Whether the matches, of this number, are of one place, larger than logos are.
+    //! Whether these matches are one place, larger than a logo.
     bool isPlace(int matches) const;
 
-    //! Whether they are all over what both images show.
+    //! Whether the matches are all over the shared part.
     bool isEverywhere() const;
 };
+
+/** Whether the shared part lies over both images, such as captions, a frame or a part of the vehicle: there they are equal to the pixel, and elsewhere,
+where both have keypoints, they differ. */
+bool isOverlay(const SharedPart& reference, const SharedPart& image);
 
 }  // namespace cv::iib

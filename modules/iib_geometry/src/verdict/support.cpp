@@ -7,12 +7,11 @@
 namespace cv::iib {
 namespace {
 
-const size_t MANY = 250,
-             FEW = 80;            // matches that are compared: of which few may be right, of which most are
-const size_t NEAREST = 10;        // neighbours of a match, in the first image
-const int LEAST_NEIGHBOURS = 2;   // that agree with it
-const double LEAST_DISTANCE = 2;  // pixels; of nearer neighbours the direction is uncertain
-const double REGION = 64;         // pixels: about the side of a described region
+const size_t MANY = 250, FEW = 80;  // matches that are tested, if few of them may be right, and if most are
+const size_t NEAREST = 10;          // neighbours of a match, in the first image
+const int LEAST_NEIGHBOURS = 2;     // that agree with it
+const double LEAST_DISTANCE = 2;    // pixels; the direction to nearer neighbours is uncertain
+const double REGION = 64;           // pixels: about the side of a described region
 const size_t FEW_REGIONS = 6;
 const double ROUGH = .5;      // tolerance of matches far apart, between which depth and perspective change
 const double LEAST_FAR = .3;  // of pairs of matches far apart that agree
@@ -20,7 +19,7 @@ const double EXACT = .25;     // tolerance around an estimated map
 
 typedef std::vector<Point2d> Points;
 
-//! Evenly, where there are many.
+//! An evenly spaced sample.
 Points someOf(const Points& points, size_t most)
 {
     const size_t step = (points.size() + most - 1) / most;
@@ -30,7 +29,7 @@ Points someOf(const Points& points, size_t most)
     return some;
 }
 
-//! Indices of a point and one of those nearest to it.
+//! Pairs of a point and one of its nearest neighbours, as indices.
 typedef std::vector<std::pair<size_t, size_t>> Neighbours;
 
 Neighbours neighboursOf(const Points& points)
@@ -69,11 +68,11 @@ bool isFlat(const Matx22d& moments)
     return !(determinant(moments) > 1e-3 * trace(moments) * trace(moments));
 }
 
-//! The linear map to which displacements of neighbours have the least sum of relative distances, by reweighted least squares.
+//! The linear map with the least sum of relative distances of neighbours' displacements, by reweighted least squares.
 Matx33d linearOf(const Points& points1, const Points& points2, const Neighbours& neighbours)
 {
     const int rounds = 5;
-    const double least = .05;  // relative distance: what is nearer counts alike
+    const double least = .05;  // relative distance: smaller ones have the same weight
     Matx22d linear = Matx22d::eye();
     for (int round = 0; round < rounds; round++)
     {

@@ -8,34 +8,34 @@
 
 namespace cv::iib {
 
-/** Matches whose neighbours move as one affine map between the images has it. Neighbouring right matches agree about the map, also of a
-scene that is not flat; wrong ones hardly ever do. */
+/** How many matches move as their neighbours do, by one affine map between the images. Right matches agree with their neighbours, also in a
+scene with depth; wrong ones hardly ever do. */
 struct Support
 {
-    int compared = 0;              //!< matches: all, or some where there are many
-    int count = 0;                 //!< of them, that are supported
-    Matx33d map = Matx33d::eye();  //!< affine, from points1 to points2: estimated from the matches that agree
+    int compared = 0;              //!< number of matches that were tested, a sample where there are many
+    int count = 0;                 //!< of these, matches that agree with their neighbours
+    Matx33d map = Matx33d::eye();  //!< affine, from points1 to points2, estimated from the matches that agree
 
-    /** Of matches of which few may be right.
-    @param map roughly; of it only the derivative counts.
-    @param tolerance of a neighbour's displacement from that, in parts of it. */
+    /** For matches of which few may be right.
+    @param map an estimate, of which only the linear part is used.
+    @param tolerance of a neighbour's displacement, relative to the displacement by the map. */
     static Support around(const std::vector<Point2d>& points1, const std::vector<Point2d>& points2,
             const Matx33d& map, double tolerance);
 
-    //! Of matches most of which are right, between which any affine map may lead.
+    //! For matches most of which are right, without an estimate of the map.
     static Support of(const std::vector<Point2d>& points1, const std::vector<Point2d>& points2);
 
     double share() const { return (double)count / std::max(compared, 1); }
 };
 
-/** Whether matches far from each other lie as the map of neighbours has it. Else neighbours agree in small parts alone: where windows look the same
-upside down, or in a cluster beside which others agree by chance.
+/** Whether matches far from each other agree with the map of their neighbours. They do not where only small parts agree, such as windows that look
+the same upside down.
 @param map from points1 to points2, pixels, estimated from neighbours. */
 bool agreeFarApart(
         const std::vector<Point2d>& points1, const std::vector<Point2d>& points2, const Matx33d& map);
 
-/** Whether matches that a search found are of one structure of an image alone, such as a round spot, which looks like others in some view:
-whether they lie in few regions as large as one that is described.
+/** Whether matches that a search found are of one structure alone, such as a round spot that looks like others in some view: they lie in few
+regions of a descriptor's size.
 @param points of the matches in a view, pixels. */
 bool areOneStructure(const std::vector<Point2d>& points);
 

@@ -20,12 +20,12 @@ double square(double x) { return x * x; }
 
 const int CELLS = 32;           // of the diagonal of what the points span
 const double CERTAINLY = 1e-3;  // chance
-const double MODELS = 10;       // that a sample proposes, at most
+const double MODELS = 10;       // largest number that a sample proposes
 
-//! The natural logarithm of n!, to ten digits (Abramowitz and Stegun, 6.1.40). C's lgamma writes its sign where all threads do.
+//! Natural logarithm of n!, to ten digits (Abramowitz and Stegun, 6.1.40). C's lgamma is not safe for threads.
 double logFactorial(int n)
 {
-    double x = n + 1, below = 1;  // of the series, which is good from 10 on; and the factors that lead there
+    double x = n + 1, below = 1;  // the series is accurate from 10 on; below: the factors up to there
     for (; x < 10; x++)
         below *= x;
     const double series = (1 / 12. - (1 / 360. - 1 / (1260 * x * x)) / (x * x)) / x;
@@ -48,8 +48,8 @@ double chanceOfSoMany(int n, int k, double each)
     return sum;
 }
 
-/** The fundamental matrix or homography of the matches that are marked.
-@return nothing where these are too few or lie in one line. */
+/** The fundamental matrix or homography of the marked matches.
+@return empty if they are too few or lie on one line. */
 Mat modelOf(const Mat& points1, const Mat& points2, const Verdict::Marks& marks, bool epipolar)
 {
     Mat chosen[2];
@@ -68,6 +68,17 @@ Mat modelOf(const Mat& points1, const Mat& points2, const Verdict::Marks& marks,
 
 double diagonal(const Size2d& size) { return std::hypot(size.width, size.height); }
 
+typedef std::bitset<(CELLS + 1) * (CELLS + 1)> Cells;
+
+Cells cellsOf(const Verdict::Marks& matches, const std::vector<int>& cellOf)
+{
+    Cells cells;
+    for (size_t i = 0; i < matches.size(); i++)
+        if (matches[i])
+            cells.set(cellOf[i]);
+    return cells;
+}
+
 }  // namespace
 
 Verdict::Verdict(const Mat& points1, const Mat& points2)
@@ -77,7 +88,7 @@ Verdict::Verdict(const Mat& points1, const Mat& points2)
         shifts_.push_back(points2.at<Point2d>(i) - points1.at<Point2d>(i));
     firsts_.resize(points1.rows);
     std::iota(firsts_.begin(), firsts_.end(), 0);
-    for (int round = 0; round < 2; round++)  // what is outermost, places tell, however many matches they have
+    for (int round = 0; round < 2; round++)  // the second time, the span is that of places, not of matches
     {
         const Mat* const all[] = {&points1, &points2};
         for (int image = 0; image < 2; image++)
@@ -106,15 +117,6 @@ Verdict::Verdict(const Mat& points1, const Mat& points2)
     }
 }
 
-int Verdict::places(const Marks& matches, int image) const
-{
-    std::bitset<(CELLS + 1) * (CELLS + 1)> cells;
-    for (size_t i = 0; i < matches.size(); i++)
-        if (matches[i])
-            cells.set(cells_[image][i]);
-    return (int)cells.count();
-}
-
 std::vector<double> Verdict::sumsOfPlaces(const std::vector<double>& values) const
 {
     std::vector<double> sums((CELLS + 1) * (CELLS + 1));
@@ -128,14 +130,16 @@ Verdict::Marks Verdict::elsewhere(const Marks& matches, const Marks& others) con
     Marks result = matches;
     for (const std::vector<int>& cells : cells_)
     {
-        std::bitset<(CELLS + 1) * (CELLS + 1)> taken;
-        for (size_t i = 0; i < others.size(); i++)
-            if (others[i])
-                taken.set(cells[i]);
+        const Cells taken = cellsOf(others, cells);
         for (size_t i = 0; i < result.size(); i++)
             result[i] = result[i] && !taken[cells[i]];
     }
     return result;
+}
+
+int Verdict::places(const Marks& matches, int image) const
+{
+    return (int)cellsOf(matches, cells_[image]).count();
 }
 
 int Verdict::places(const Marks& matches) const { return std::min(places(matches, 0), places(matches, 1)); }
@@ -143,14 +147,13 @@ int Verdict::places(const Marks& matches) const { return std::min(places(matches
 double Verdict::chance(Distance distance, double limit, const std::vector<double>& wrong) const
 {
     const int few = 3;
-    // Of a line, the nearer of two distances counts, in either image; of a point, that in the second one.
+    // The error from a line is the smaller of both images', from a point that of the second image.
     const auto along = [&](const Size2d& span) { return 2 * limit * diagonal(span) / span.area(); };
     const double anywhere = distance == FROM_LINE ? std::max(along(spans_[0]), along(spans_[1]))
                                                   : CV_PI * limit * limit / spans_[1].area();
     const auto near = std::count_if(wrong.begin(), wrong.end(), [&](double e) { return e < limit * limit; });
     double share = 0;
     if (distance == FROM_POINT && !wrong.empty())
-        // If none of so many is near, the chance may still be that of one more.
         share = std::max((double)near / (double)wrong.size(), 1. / (double)(wrong.size() + 1));
     else if (near >= few || (int)wrong.size() < few)
         share = (double)near / std::max<double>((double)wrong.size(), 1);
@@ -195,7 +198,7 @@ double Verdict::logFalseAlarms(const Marks& all, const Marks& agreeing, int samp
 
 double Verdict::countOfOneShift(const Marks& matches, const std::function<bool(int)>& isInside) const
 {
-    const double near = 1 / 25.;  // of a cell: a pixel of a small image
+    const double near = 1 / 25.;  // of a cell's side: a pixel of a small image
     std::vector<int> all;
     for (int i : firsts_)
         if (matches[i] && isInside(i))
@@ -218,8 +221,8 @@ bool Verdict::isOfSmallParts(const Marks& agreeing, int sampleSize, double chanc
 {
     const int side = CELLS + 1, mostParts = 4;
     const double mostShifted = .6;
-    const double share[] = {.5, .8, .8, .8};          // of the matches that agree, in so many parts and one
-    const Size sizes[] = {{5, 5}, {12, 3}, {3, 12}};  // cells: a twentieth of the image
+    const double share[] = {.5, .8, .8, .8};          // of the matches that agree, in the first 1 to 4 parts
+    const Size sizes[] = {{5, 5}, {12, 3}, {3, 12}};  // of a part, cells: a twentieth of the image
     const auto count = std::count_if(firsts_.begin(), firsts_.end(), [&](int i) { return agreeing[i]; });
     for (const std::vector<int>& cells : cells_)
     {
@@ -231,20 +234,19 @@ bool Verdict::isOfSmallParts(const Marks& agreeing, int sampleSize, double chanc
         {
             double most = 0;
             Rect best;
-            integral(counts, sums, CV_64F);
             for (const Size& size : sizes)
-                for (int y = 0; y + size.height <= side; y++)
-                    for (int x = 0; x + size.width <= side; x++)
-                    {
-                        const double sum =
-                                sums.at<double>(y, x) + sums.at<double>(y + size.height, x + size.width) -
-                                sums.at<double>(y, x + size.width) - sums.at<double>(y + size.height, x);
-                        if (sum > most)
-                        {
-                            most = sum;
-                            best = Rect(Point(x, y), size);
-                        }
-                    }
+            {
+                double sum;
+                Point at;
+                boxFilter(counts, sums, CV_64F, size, Point(0, 0), false, BORDER_CONSTANT);
+                minMaxLoc(sums(Rect(0, 0, side - size.width + 1, side - size.height + 1)), nullptr, &sum,
+                        nullptr, &at);
+                if (sum > most)
+                {
+                    most = sum;
+                    best = Rect(at, size);
+                }
+            }
             counts(best) = 0;
             const auto isInside = [&](int i) { return best.contains({cells[i] % side, cells[i] / side}); };
             shifted += countOfOneShift(agreeing, isInside);
@@ -260,7 +262,7 @@ bool Verdict::isOfSmallParts(const Marks& agreeing, int sampleSize, double chanc
                     others++;
                     beside += agreeing[i];
                 }
-            // Some of the others the pose was fitted to; more, where a shift left it free to turn.
+            // The pose was fitted to some of the others, to more where a shift leaves it free to turn.
             const int fitted = isShifted ? 2 * sampleSize : sampleSize;
             if (2 * beside < others && chanceOfSoMany(others, beside - fitted, chance) > CERTAINLY)
                 return true;
@@ -344,14 +346,14 @@ double logFalseAlarms(
 
 double confidenceLimit(double probability, int dimensions)
 {
-    const double share = .25;  // of the covariance, that is the scale matrix: chosen on rendered places
+    const double share = .25;  // scale matrix over covariance: chosen on rendered places
     if (!(probability >= 0 && probability < 1))
         CV_Error(Error::StsOutOfRange,
                 format("confidenceLimit: probability is %g; it is 0 or more and below 1", probability));
     if (dimensions < 1)
         CV_Error(Error::StsOutOfRange,
                 format("confidenceLimit: dimensions is %d; it is 1 or more", dimensions));
-    // Of Student's t with two degrees of freedom in d dimensions, the chance of being inside is (m / (m + 2 share))^(d / 2).
+    // Student's t with two degrees of freedom in d dimensions is inside m with probability (m / (m + 2 share))^(d / 2).
     const double root = std::pow(probability, 2. / dimensions);
     return 2 * share * root / (1 - root);
 }

@@ -149,6 +149,37 @@ TEST(Alignment, tells_what_a_part_of_the_images_is_beside_by)
     }
 }
 
+//! A plane and squares of many depths, of which some are displaced by more than shadows: all of them are part of the error.
+TEST(Alignment, counts_depth_off_the_plane_in_the_error)
+{
+    const Mat reference = picture(16);
+    Mat image = reference.clone(), transform, error;
+    for (int k = 0; k < 48; k++)
+        if (k * 7 % 12 >= 8)  // of twelve squares, two by 4 pixels and two by 9 to 16
+        {
+            const int by = k * 7 % 12 < 10 ? 4 : 9 + k * 5 % 8;
+            const Rect square(k % 8 * 50, k / 8 * 50, std::min(50, 400 - by - k % 8 * 50), 50);
+            reference(square + Point(by, 0)).copyTo(image(square));
+        }
+    String reason;
+    ASSERT_TRUE(alignImages(reference, image, transform, ALIGN_HOMOGRAPHY, error, noArray(), &reason))
+            << reason;
+    EXPECT_GT(error.at<double>(0), 6);
+}
+
+TEST(Alignment, names_exposure_and_overlap)
+{
+    Mat white, transform;
+    String reason;
+    picture(1).convertTo(white, CV_8U, 16);
+    EXPECT_FALSE(alignImages(picture(1), white, transform, ALIGN_HOMOGRAPHY, noArray(), noArray(), &reason));
+    EXPECT_NE(reason.find("of the image is black or white"), String::npos) << reason;
+    const Mat wide = spots(5, 700, Size(700, 300));
+    EXPECT_FALSE(alignImages(wide.colRange(0, 360), wide.colRange(340, 700), transform, ALIGN_HOMOGRAPHY,
+            noArray(), noArray(), &reason));
+    EXPECT_NE(reason.find("overlap"), String::npos) << reason;
+}
+
 //! A part of the picture as large as a third of it is no logo.
 TEST(Alignment, finds_a_part_of_a_picture)
 {

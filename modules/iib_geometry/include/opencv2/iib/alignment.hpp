@@ -17,31 +17,31 @@ enum AlignmentModel
     ALIGN_SIMILARITY,  //!< and rotation and scale
     ALIGN_AFFINE,      //!< and shear
     ALIGN_HOMOGRAPHY,  //!< and perspective: a plane, or any scene from one place
-    ALIGN_AUTO         //!< the simplest of them that is true of the images
+    ALIGN_AUTO         //!< the simplest of these that is true of the images
 };
 
-/** @brief Aligns an image with a reference that was taken in another light: finds where its pixels lie in the reference.
+/** @brief Finds the transform from an image to a reference that was taken in another light.
 
-For images of a plane, or of anything by a camera that stays where it is, though it may turn and zoom, by day and by night.
-Images from two places of a scene that is not flat have no such transform; findRelativePose is for them. Points are detected
-in both images and matched, where that fails also by images that are turned by any angle (matchRotated, for all models but
-ALIGN_TRANSLATION); the matches are refined (refineMatches), and the transform that most of them agree with is fitted to them as
-findRelativePose fits a pose. Images whose longer side has more than 1024 pixels are reduced for that, and in a second attempt those of
-more than 512 to 512 pixels, where blurred ones are sharper; the matches that agree are then refined at full size, where the images are
-sharp enough for it. The same input gives the same answer, whatever the number of threads.
+It is for images of a plane, and for any scene by a camera that does not move, though it may turn and zoom. Images of a scene with depth from two
+places have no such transform; findRelativePose is for them.
 
-There is no transform, and `reason` says which of these it was, where
-- the matches that agree are not significant (the number of false alarms, as of findRelativePose);
-- a transform of more freedom agrees better with the matches than noise would let it;
-- the camera moved through a scene with depth (parallax): matches in other places lie beside the transform along lines through one point;
-- the images are equal to the pixel in some parts and differ in the others, as by captions, a frame or a part of a vehicle;
-- the matches are single pixels that do not move, as hot pixels;
-- the matches lie in small parts alone, as of a logo: neither all over what both images show nor in one place, which is a connected group of
-  15 of 192 cells with 80 matches;
-- the errors of the corners are more than a quarter of the image's diagonal.
+Points are detected in both images, matched and refined (refineMatches), and a transform is fitted to most of the matches. If that fails, views of
+images that are rotated, zoomed or tilted against each other are searched (as in matchViews, for all models but ALIGN_TRANSLATION). Images of more
+than 1024 pixels are reduced, and in a second attempt those of more than 512 pixels are reduced to 512, where blurred images are sharper. The
+matches that agree are then refined at full size, if the images are sharp there. The result does not depend on the number of threads.
 
-The verdict and its limits do not depend on the images' sizes. Where a part moved otherwise, or only one part agrees, the transform is that
-of the larger part, and `note` says so. How often the verdict errs is on the page of uncertainties.
+There is no transform, and `reason` says why, where
+- the matches that agree are not significant (logFalseAlarms), which may be because most of an image is black or white;
+- a model of more freedom agrees significantly better;
+- the camera moved through a scene with depth (parallax): matches in other places lie beside the transform, along lines through one point;
+- the images are equal to the pixel in some parts and differ in the others, such as captions, a frame or a part of a vehicle;
+- the matches are single pixels that do not move, such as hot pixels;
+- the matches lie in small parts alone, such as a logo or a narrow overlap: neither all over the part that both images show, nor in one place. A place is
+  a connected group of 15 of 192 cells with 80 matches;
+- the standard deviation of a corner is more than a quarter of the image's diagonal.
+
+The verdict does not depend on the images' sizes. Where a part moved otherwise, or only one part agrees, the transform is that of the larger part, and
+`note` says so. doc/uncertainty.md counts errors by kind of data.
 
     cv::Mat transform, aligned;
     if (cv::iib::alignImages(reference, image, transform))
@@ -49,21 +49,19 @@ of the larger part, and `note` says so. How often the verdict errs is on the pag
 
 @param reference, image of any size, of the types that IIBDescriptorExtractor::compute takes
 @param transform 3 x 3, CV_64F, last entry 1: from pixels of the image to pixels of the reference
-@param model AlignmentModel; the simplest one that is true of the images gives the smallest errors, one that is not is refused. ALIGN_AUTO chooses
-    that one by the likelihood of the matches' errors (compare Torr 1998); where a part of the images moved, that of the part that stayed
-@param error 4 x 1, CV_64F, pixels of the reference: standard deviations of the places of the image's corners (top left,
-    top right, bottom right, bottom left), each of a length, the root of both coordinates' variances together. They are estimated from the
-    matches' noise, from how much parts of the image disagree, and from the resampling of patches; they are large for corners far from the matches.
-    Where a quarter as many places as agree lie beside the transform by less than parallax, their distance is part of the error
-@param matches N x 4, CV_32F: the matches that agree with the transform, x and y in the reference, x and y in the image,
-    pixels; where the answer is false, those that agreed best
+@param model AlignmentModel. The simplest true model gives the smallest errors; an untrue one is refused. ALIGN_AUTO chooses the simplest true model by
+    the likelihood of the matches' errors (compare Torr 1998), or that of the static part if a part of the scene moved
+@param error 4 x 1, CV_64F, pixels of the reference: standard deviations of the image's corners (top left, top right, bottom right, bottom left), each
+    the root of both coordinates' variances together. They include the matches' noise, disagreement among parts of the image, and resampling of patches.
+    They include the displacement of a part beside the transform, such as moved shadows or depth, if it has an eighth as many places as agree
+@param matches N x 4, CV_32F: the matches that agree with the transform, or with the best refused one: x and y in the reference, x and y in the image,
+    pixels
 @param reason if not null: why there is no transform, a sentence; empty if there is one
-@param referenceMask, mask CV_8UC1 of the size of the reference and of the image, 0 where no points are to be found; empty: everywhere
-@param simplest if not null: the AlignmentModel of least freedom that explains the matches as well, which is that of the transform if `model` is
-    ALIGN_AUTO; -1 where there is no transform
-@param note if not null: a sentence about a transform that was found, such as that a simpler model is as true, that a part moved
-    otherwise, or that the images agree in one part alone; mostly empty
-@return false, with transform and error empty (NaN where their size is fixed), if there is none
+@param referenceMask, mask CV_8UC1 of the size of the reference and of the image, 0 where no points are to be detected; empty: everywhere
+@param simplest if not null: the AlignmentModel of least freedom that explains the matches as well; -1 if there is no transform
+@param note if not null: a sentence about a transform that was found, such as that a simpler model is as true, that a part moved otherwise, or
+    that the images agree in one part alone; mostly empty
+@return whether there is a transform; if not, transform and error are empty (NaN if their size is fixed)
 @throws cv::Exception for an unknown model, and as IIBDescriptorExtractor::compute for images */
 CV_EXPORTS_W bool alignImages(InputArray reference, InputArray image, OutputArray transform,
         int model = ALIGN_HOMOGRAPHY, OutputArray error = noArray(), OutputArray matches = noArray(),
@@ -72,7 +70,7 @@ CV_EXPORTS_W bool alignImages(InputArray reference, InputArray image, OutputArra
 
 /** @brief Aligns many images with one reference as alignImages does, and describes the reference once.
 
-The reference is not copied; its pixels must stay. Threads may share one. */
+The reference is not copied; its pixels must not change. Threads may share one aligner. */
 class CV_EXPORTS_W ImageAligner
 {
 public:
