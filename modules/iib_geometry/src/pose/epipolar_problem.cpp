@@ -81,6 +81,41 @@ EpipolarProblem EpipolarProblem::subset(const std::vector<bool>& marks) const
     return chosen;
 }
 
+std::vector<int> EpipolarProblem::alikeTheirNeighbours(const std::vector<int>& matches) const
+{
+    const double farthest = .1, nearest = .01;  // of the span: nearer, matches may be wrong together
+    const double unlike = .5;  // of the distance between two matches: how much their moves differ
+    const int enough = 2;
+    std::vector<int> order = matches, counts(size());
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return first_[a].x < first_[b].x; });
+    double top = std::numeric_limits<double>::infinity(), bottom = -top;
+    for (int i : order)
+    {
+        top = std::min(top, first_[i].y);
+        bottom = std::max(bottom, first_[i].y);
+    }
+    const double span =
+            order.empty() ? 0 : std::hypot(bottom - top, first_[order.back()].x - first_[order[0]].x);
+    for (size_t a = 0; a < order.size(); a++)
+        for (size_t b = a + 1; b < order.size(); b++)
+        {
+            const int i = order[a], k = order[b];
+            const Point2d way = first_[k] - first_[i], change = second_[k] - second_[i] - way;
+            if (way.x > farthest * span)
+                break;
+            const double way2 = way.ddot(way);
+            if (way2 > square(nearest * span) && way2 < square(farthest * span) &&
+                    change.ddot(change) < square(unlike) * way2)
+            {
+                counts[i]++;
+                counts[k]++;
+            }
+        }
+    order.erase(std::remove_if(order.begin(), order.end(), [&](int i) { return counts[i] < enough; }),
+            order.end());
+    return order;
+}
+
 void EpipolarProblem::propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const
 {
     Point2d first[5], second[5];

@@ -25,6 +25,10 @@ public:
     int sampleSize() const { return 5; }
     int parameters() const { return 5; }
 
+    /** Of these matches, those that at least two of the others move like, at less than a tenth of the points' span from them: right
+    matches have such neighbours, wrong ones hardly any. */
+    std::vector<int> alikeTheirNeighbours(const std::vector<int>& matches) const;
+
     //! The poses that see the sample in front of both cameras.
     void propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const;
 
