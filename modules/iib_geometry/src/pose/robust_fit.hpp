@@ -275,10 +275,11 @@ template <class Problem> void finish(const Problem& problem, Fit<Problem>& fit)
 }
 
 /** The scale of the errors within a distance, by their median (Rousseeuw and Leroy 1987), pixels.
-@param parameters of the model: so many errors are small because it was fitted to them. */
-inline double scaleWithin(const std::vector<double>& squared, double distance, int parameters)
+@param parameters of the model: so many errors are small because it was fitted to them.
+@param least scale, that of refined matches. */
+inline double scaleWithin(
+        const std::vector<double>& squared, double distance, int parameters, double least = .1)
 {
-    const double least = .1;  // of refined matches
     std::vector<double> near;
     for (double error : squared)
         if (error < square(distance))

@@ -40,6 +40,8 @@ bool explainsMore(const std::vector<double>& squared, const std::vector<double>&
 bool isDirectionCertain(const std::vector<double>& squared, const std::vector<double>& parallaxes,
         double limit, const Verdict& verdict)
 {
+    const double certain =
+            -1;  // a turn in place of a move is taken out of the parallaxes, so that little is left to chance
     const int matchesOfDirection = 2;
     Verdict::Marks seen(squared.size()), agree = seen;
     double chances = 0, count = 0;
@@ -56,7 +58,7 @@ bool isDirectionCertain(const std::vector<double>& squared, const std::vector<do
                  others = verdict.places(seen) - verdict.places(agree);
     // Here the chance is so large that it counts that the others do not agree.
     return verdict.logFalseAlarms(seen, agree, matchesOfDirection, chance) + others * std::log10(1 - chance) <
-           Verdict::CERTAIN;
+           certain;
 }
 
 Verdict::Marks withinByMoreThanChance(
