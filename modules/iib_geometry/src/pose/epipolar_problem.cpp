@@ -28,12 +28,13 @@ std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
     return rays;
 }
 
-//! The rotation from five directions to others (Kabsch 1976).
-Matx33d rotationBetween(const Point2d (&first)[5], const Point2d (&second)[5])
+//! The rotation from some directions to others, of matches with weights (Kabsch 1976).
+template <class WeightOf>
+Matx33d rotationBetween(const Point2d* first, const Point2d* second, int count, const WeightOf& weightOf)
 {
     Matx33d products = Matx33d::zeros(), U, Vt;
-    for (int k = 0; k < 5; k++)
-        products += normalize(Vec3d(second[k].x, second[k].y, 1)) *
+    for (int k = 0; k < count; k++)
+        products += weightOf(k) * normalize(Vec3d(second[k].x, second[k].y, 1)) *
                     normalize(Vec3d(first[k].x, first[k].y, 1)).t();
     Vec3d values;
     SVD::compute(products, values, U, Vt);
@@ -81,6 +82,41 @@ EpipolarProblem EpipolarProblem::subset(const std::vector<bool>& marks) const
     return chosen;
 }
 
+std::vector<int> EpipolarProblem::alikeTheirNeighbours(const std::vector<int>& matches) const
+{
+    const double farthest = .1, nearest = .01;  // of the span: nearer, matches may be wrong together
+    const double unlike = .5;  // of the distance between two matches: how much their moves differ
+    const int enough = 2;
+    std::vector<int> order = matches, counts(size());
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return first_[a].x < first_[b].x; });
+    double top = std::numeric_limits<double>::infinity(), bottom = -top;
+    for (int i : order)
+    {
+        top = std::min(top, first_[i].y);
+        bottom = std::max(bottom, first_[i].y);
+    }
+    const double span =
+            order.empty() ? 0 : std::hypot(bottom - top, first_[order.back()].x - first_[order[0]].x);
+    for (size_t a = 0; a < order.size(); a++)
+        for (size_t b = a + 1; b < order.size(); b++)
+        {
+            const int i = order[a], k = order[b];
+            const Point2d way = first_[k] - first_[i], change = second_[k] - second_[i] - way;
+            if (way.x > farthest * span)
+                break;
+            const double way2 = way.ddot(way);
+            if (way2 > square(nearest * span) && way2 < square(farthest * span) &&
+                    change.ddot(change) < square(unlike) * way2)
+            {
+                counts[i]++;
+                counts[k]++;
+            }
+        }
+    order.erase(std::remove_if(order.begin(), order.end(), [&](int i) { return counts[i] < enough; }),
+            order.end());
+    return order;
+}
+
 void EpipolarProblem::propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const
 {
     Point2d first[5], second[5];
@@ -93,7 +129,7 @@ void EpipolarProblem::propose(const std::vector<int>& sample, std::vector<Relati
     std::vector<Matx33d> essentials;
     fivePointEssentials(first, second, essentials);
     if (essentials.empty())  // as where no point has parallax: any t will do
-        poses.push_back({rotationBetween(first, second), Vec3d(0, 0, 1)});
+        poses.push_back({rotationBetween(first, second, 5, [](int) { return 1.; }), Vec3d(0, 0, 1)});
     for (const Matx33d& essential : essentials)
     {
         RelativePose four[4];
@@ -152,6 +188,24 @@ double EpipolarProblem::parallax(const RelativePose& pose, int first, int second
     return far[2] > 0 ? std::sqrt(square(far[0] / far[2] - second_[second].x) / (weights_[0] + weights_[2]) +
                                   square(far[1] / far[2] - second_[second].y) / (weights_[1] + weights_[3]))
                       : std::numeric_limits<double>::infinity();
+}
+
+std::vector<double> EpipolarProblem::leastParallaxes(
+        const RelativePose& pose, const std::vector<double>& squared, double limit) const
+{
+    const int rounds = 5;
+    RelativePose turned = pose;
+    std::vector<double> parallaxes(size());
+    for (int round = 0; round <= rounds; round++)
+    {
+        for (int i = 0; i < size(); i++)
+            parallaxes[i] = parallax(turned, i, i);
+        if (round < rounds)
+            turned.R = rotationBetween(first_.data(), second_.data(), size(), [&](int i) {
+                return squared[i] < square(limit) ? 1 / (square(limit) + square(parallaxes[i])) : 0;
+            });
+    }
+    return parallaxes;
 }
 
 //! A pose and its derivatives.
@@ -332,12 +386,13 @@ std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
         const RelativePose& pose, const std::vector<Row<Step>>& rows, double noise2) const
 {
     const double little = .01;  // pixels, for differences
+    const double most = 2;      // times the mean of what noise makes, which few rows exceed by it alone
     const double more = 1 + 2 * std::sqrt(2. / std::max<double>((double)rows.size(), 1));
     const Linear linear(pose);
     std::vector<Square<Step>> all;
     for (const Row<Step>& r : rows)
     {
-        Square<Step> noise = Square<Step>::zeros();
+        Square<Step> noise = Square<Step>::zeros(), whole = noise;
         for (int coordinate = 0; coordinate < 4; coordinate++)
         {
             Point2d first = first_[r.match], second = second_[r.match];
@@ -345,8 +400,14 @@ std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
             *moved[coordinate] += little * pixels_[coordinate];
             addProduct(row(linear, first, second).J - r.J, noise2 / square(little) * more, noise);
         }
+        addProduct(r.J, 1, whole);
         mirror(noise);
-        all.push_back(noise * std::min(1., r.J.dot(r.J) / (trace(noise) + NOWHERE)));
+        mirror(whole);
+        const double left = 1 - most * (noise(3, 3) + noise(4, 4)) / (whole(3, 3) + whole(4, 4) + NOWHERE),
+                     share = std::sqrt(std::max(left, 0.));
+        const Square<Step> shares = Square<Step>::diag({1, 1, 1, share, share});
+        const Square<Step> half = Square<Step>::diag({1, 1, 1, .5, .5});  // the shares leave out the rest
+        all.push_back(whole - shares * (whole - half * noise * half) * shares);
     }
     return all;
 }

@@ -25,6 +25,10 @@ public:
     int sampleSize() const { return 5; }
     int parameters() const { return 5; }
 
+    /** Of these matches, those that at least two of the others move like, at less than a tenth of the points' span from them: right
+    matches have such neighbours, wrong ones hardly any. */
+    std::vector<int> alikeTheirNeighbours(const std::vector<int>& matches) const;
+
     //! The poses that see the sample in front of both cameras.
     void propose(const std::vector<int>& sample, std::vector<RelativePose>& poses) const;
 
@@ -38,14 +42,20 @@ public:
     //! How far a match is from where a point at infinity would be seen, pixels: as Sampson's error, a part of it in either image.
     double parallax(const RelativePose& pose, int first, int second) const;
 
+    /** The same of all matches by the rotation under which those within a limit have the least parallax: a small turn looks like a move
+    across the view.
+    @param squared errors of the matches. */
+    std::vector<double> leastParallaxes(
+            const RelativePose& pose, const std::vector<double>& squared, double limit) const;
+
     //! What else the plane that most of the matches lie on may be seen from (Faugeras and Lustman 1988).
     std::vector<RelativePose> rivals(const RelativePose& pose, double scale) const;
     bool areApart(const RelativePose& pose, const RelativePose& other) const;
     void linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const;
     RelativePose moved(const RelativePose& pose, const Step& step) const { return iib::moved(pose, step); }
 
-    /** The part of each row's J J' that noise of the points alone makes: of points without parallax all that there is for the direction of
-    t. Rather too much than too little of it, but no more than the row has: beside an epipole all is noise.
+    /** The part of each row's J J' that noise of the points alone makes. A row whose derivatives by the direction of t may be noise alone, as
+    of points without parallax or beside an epipole, has none by the direction. Rather too much is noise than too little.
     @param noise2 variance of a coordinate, pixels^2. */
     std::vector<Square<Step>> noiseInDerivatives(
             const RelativePose& pose, const std::vector<Row<Step>>& rows, double noise2) const;

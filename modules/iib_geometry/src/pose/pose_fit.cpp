@@ -8,24 +8,33 @@ namespace {
 
 typedef std::vector<double> Errors;
 
-const double FIRST_THRESHOLD = 1.4, LAST_THRESHOLD = 12;  // scales
 const int THRESHOLDS = 7;
+const double FIRST_THRESHOLD = 1.4, LAST_THRESHOLD = 12;  // scales
+const double UNSURE = 4;  // times smaller or larger than a scale that errors show, the right one may be
 const double FINELY = 1e-9, ROUGHLY = 1e-3;  // by how much less of its loss a pose is polished
 const int FEWEST = 100, FEW_TRIALS = 1000, MANY_TRIALS = 500, MOST_TRIALS = 12000;
-const double MISSED = 1e-3;         // probability that no sample was of right matches alone
+const double MISSED = 1e-4;         // probability that no sample was of right matches alone
 const int ROUNDS = 3;               // of samples from what agrees with the best pose,
 const double BETTER = .99;          // while its sum falls to less than this of it
 const double MOST_OF_REFINED = .6;  // pixels: matches that are not refined have more
 const double WIDER = 4;             // one scale that is tried over the one before
 const int FEW = 30;                 // matches: all of them count
 
-//! What the errors of a pose amount to: the sum over all thresholds.
-double misfit(const Errors& squared, double scale, const Errors& weights)
+/** The first of the thresholds by which poses are compared.
+@param scale given by the caller, or else shown by the errors of a pose that may be wrong. */
+double firstThreshold(const EpipolarProblem& problem, bool given, double scale)
+{
+    const bool isSure =
+            given || problem.size() < 2 * FEW;  // a pose can be fitted to few matches as closely as one likes
+    return isSure ? FIRST_THRESHOLD * scale : std::max(REFINED, scale / UNSURE);
+}
+
+//! The sum of the squared errors, cut off at thresholds from the first one to one that is LAST_THRESHOLD times as far.
+double misfit(const Errors& squared, double first, const Errors& weights)
 {
     double perThreshold2[THRESHOLDS], sum = 0;
     for (int k = 0; k < THRESHOLDS; k++)
-        perThreshold2[k] = 1 / square(scale * FIRST_THRESHOLD *
-                                       std::pow(LAST_THRESHOLD / FIRST_THRESHOLD, k / (THRESHOLDS - 1.)));
+        perThreshold2[k] = 1 / square(first * std::pow(LAST_THRESHOLD, k / (THRESHOLDS - 1.)));
     for (size_t i = 0; i < squared.size(); i++)
     {
         double each = 0;
@@ -46,20 +55,21 @@ struct Candidate
 };
 
 Candidate candidateOf(
-        const EpipolarProblem& problem, const RelativePose& pose, double scale, const Errors& weights)
+        const EpipolarProblem& problem, const RelativePose& pose, double first, const Errors& weights)
 {
     Candidate candidate;
     candidate.pose = pose;
     problem.squaredErrors(pose, candidate.squared);
-    candidate.sum = misfit(candidate.squared, scale, weights);
+    candidate.sum = misfit(candidate.squared, first, weights);
     return candidate;
 }
 
 /** The best of the poses that a search leads to, and the other candidates.
 @param unit scale of the search, pixels.
+@param first threshold by which poses are compared.
 @param farthest of a match that agrees, pixels: in a wider band matches of nearby points agree, whatever they are. */
-PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double unit, double farthest,
-        Search<EpipolarProblem>& search, int trials, const Errors& weights)
+PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double unit, double first,
+        double farthest, Search<EpipolarProblem>& search, int trials, const Errors& weights)
 {
     PoseFit fit;
     std::vector<Candidate> candidates;
@@ -67,7 +77,7 @@ PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double uni
         const size_t count = candidates.size();
         candidates.resize(count + poses.size());
         inParallel(poses.size(),
-                [&](size_t i) { candidates[count + i] = candidateOf(problem, poses[i], unit, weights); });
+                [&](size_t i) { candidates[count + i] = candidateOf(problem, poses[i], first, weights); });
         std::stable_sort(candidates.begin(), candidates.end());
     };
     add(search.upTo(trials));
@@ -113,15 +123,23 @@ PoseFit searchPose(
 {
     PoseFit best;
     int samples = 0;
+    const std::vector<int> likely = problem.alikeTheirNeighbours(verdict.firstOfPlaces());
     const double farthest = scale > 0 ? LAST_THRESHOLD * scale : .75 * problem.mostScale();
     const auto isCertain = [&] { return best.logFalseAlarms < Verdict::CERTAIN; };
+    const auto isBetter = [&](const PoseFit& fit) {
+        if (!isCertain() || fit.logFalseAlarms > Verdict::CERTAIN)
+            return best.squared.empty() || fit.logFalseAlarms < best.logFalseAlarms;
+        const double first = firstThreshold(problem, scale > 0, std::min(fit.scale, best.scale));
+        return misfit(fit.squared, first, weights) < misfit(best.squared, first, weights);
+    };
     const auto tryBy = [&](double unit, int fewTrials, int mostTrials) {
-        Search<EpipolarProblem> search(problem, Loss{unit}, Loss{2 * unit}, FEWEST, MISSED);
+        Search<EpipolarProblem> search(problem, Loss{unit}, Loss{2 * unit}, FEWEST, MISSED, {}, likely);
         for (int trials : {fewTrials, mostTrials})
         {
-            PoseFit fit = fitBy(problem, verdict, unit, farthest, search, trials, weights);
+            PoseFit fit = fitBy(problem, verdict, unit, firstThreshold(problem, scale > 0, unit), farthest,
+                    search, trials, weights);
             fit.scale = scale > 0 ? scale : scaleWithin(fit.squared, fit.limit, problem.parameters());
-            if (best.squared.empty() || fit.logFalseAlarms < best.logFalseAlarms)
+            if (isBetter(fit))
                 best = fit;
             // Where they err by more than refined ones, a wider scale finds more of them in less time.
             if (!search.wantsMore() || trials == mostTrials || (isCertain() && fit.scale > MOST_OF_REFINED))
@@ -223,10 +241,11 @@ PoseFit fitPose(const EpipolarProblem& problem, const Verdict& verdict, double s
     polish(problem, Loss{best.scale}, ROUGHLY, best.model);
     finish(problem, best);
     addOthers(problem, best);
-    double least = misfit(best.squared, best.scale, weights);
+    const double first = firstThreshold(problem, scale > 0, best.scale);
+    double least = misfit(best.squared, first, weights);
     for (RelativePose& other : best.others)  // next to a pose that was polished may be a better one
     {
-        const Candidate candidate = candidateOf(problem, other, best.scale, weights);
+        const Candidate candidate = candidateOf(problem, other, first, weights);
         if (candidate.sum >= least)
             continue;
         least = candidate.sum;

@@ -22,9 +22,9 @@ struct PoseFit : Fit<EpipolarProblem>
 
 /** The pose that explains the matches best. The same in every run.
 
-No single threshold shows which of the candidates that is: each has the sum of its squared errors, cut off at seven thresholds from one
-to twelve scales, of points in front of both cameras. Without a scale, that of refined matches is tried, and wider ones until matches
-agree by more than chance.
+No single threshold shows which of the candidates that is: each has the sum of its squared errors, cut off at seven thresholds, the last
+one twelve times the first. A match behind a camera counts as a point at infinity. Half of the samples are of matches that move like their
+neighbours. Without a scale, that of refined matches is tried, and wider ones until matches agree by more than chance.
 @param scale of Cauchy's loss, pixels; 0: estimated from the errors.
 @param weights of the matches in the choice among candidates, or none. */
 PoseFit fitPose(const EpipolarProblem& problem, const Verdict& verdict, double scale,

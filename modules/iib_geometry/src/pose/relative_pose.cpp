@@ -85,20 +85,20 @@ PoseErrors estimateErrors(
             square(LARGEST_DEVIATION) * Square<EpipolarProblem::Step>::diag({0, 0, 0, 1, 1});
     std::vector<int> parts;
     const std::vector<int> partsOfAll = partsOf(points);
-    std::vector<double> parallaxes, squared;
+    std::vector<double> squared;
     for (int i = 0; i < problem.size(); i++)
-    {
-        parallaxes.push_back(problem.parallax(fit.model, i, i));
         if (fit.used[i])
             parts.push_back(partsOfAll[i]);
-    }
     Fit<EpipolarProblem> around;
     around.model = fit.model;
     around.scale = fit.errorScale;
     PoseErrors errors;
     errors.covariance = covarianceOf(problem.subset(fit.used), around, parts, LARGEST_DEVIATION);
-    const double limit = 1.5 * std::max(fit.errorScale, LEAST_SCALE);
-    const bool hasDirection = isDirectionCertain(fit.squared, parallaxes, limit, verdict);
+    const double limit = 1.5 * (fit.errorScale > LEAST_SCALE ? fit.errorScale
+                                                             : scaleWithin(fit.squared, 3 * LEAST_SCALE,
+                                                                       problem.parameters(), LEAST_NOISE));
+    const bool hasDirection = isDirectionCertain(
+            fit.squared, problem.leastParallaxes(fit.model, fit.squared, limit), limit, verdict);
     if (!hasDirection)
         errors.covariance += anyDirection;
     const Square<EpipolarProblem::Step> expected = errors.covariance.inv(DECOMP_SVD);

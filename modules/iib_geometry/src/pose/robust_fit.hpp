@@ -130,22 +130,25 @@ public:
 
     /** @param fewest samples that are tried, however many matches agree.
     @param missed probability that no sample was of right matches alone.
-    @param pool matches that samples are taken from; empty: all. */
+    @param pool matches that samples are taken from; empty: all.
+    @param likely matches that every other sample is taken from. */
     Search(const Problem& problem, const Loss& by, const Loss& wider, int fewest, double missed,
-            const std::vector<int>& pool = {})
-        : problem_(problem), by_(by), wider_(wider), fewest_(fewest), missed_(missed), pool_(pool),
+            const std::vector<int>& pool = {}, const std::vector<int>& likely = {})
+        : problem_(problem), by_(by), wider_(wider), fewest_(fewest), missed_(missed), pools_{pool},
           random_(0x5eed)
     {
-        if (pool_.empty())
+        if (pool.empty())
             for (int i = 0; i < problem.size(); i++)
-                pool_.push_back(i);
+                pools_[0].push_back(i);
+        if ((int)likely.size() >= 2 * problem.sampleSize())
+            pools_.push_back(likely);
     }
 
     /** Goes on until so many samples were tried, or enough for as many matches as agree.
     @return models polished roughly: those of the least loss, the least one first as samples proposed them. */
     std::vector<Model> upTo(int mostTrials)
     {
-        if ((int)pool_.size() >= problem_.sampleSize())
+        if ((int)pools_[0].size() >= problem_.sampleSize())
             while (samples_ < std::min<double>(mostTrials, wanted_))
                 trySamples(mostTrials);
         std::vector<Model> models(best_.size());
@@ -181,13 +184,14 @@ private:
         const double batch = getNumThreads() > 1 ? 25 : 1;
         const size_t expected = 2;  // are polished before: by the better one samples are expected
         proposals_.resize(cvCeil(std::min({batch, (double)mostTrials - samples_, wanted_ - samples_})));
-        for (Proposal& proposal : proposals_)
+        for (size_t i = 0; i < proposals_.size(); i++)
         {
-            std::vector<int>& sample = proposal.sample;
+            const std::vector<int>& pool = pools_[(samples_ + i) % pools_.size()];
+            std::vector<int>& sample = proposals_[i].sample;
             sample.resize(problem_.sampleSize());
             for (size_t k = 0; k < sample.size(); k++)
                 do
-                    sample[k] = pool_[random_.uniform(0, (int)pool_.size())];
+                    sample[k] = pool[random_.uniform(0, (int)pool.size())];
                 while (std::find(sample.begin(), sample.begin() + k, sample[k]) != sample.begin() + k);
         }
         const double before = limit();
@@ -234,9 +238,14 @@ private:
         std::vector<double> squared;
         problem_.squaredErrors(model, squared);
         const double inside = FARTHEST * square(by_.scale);
-        const auto near = std::count_if(squared.begin(), squared.end(), [&](double e) { return e < inside; });
         // Fischler and Bolles (1981): samples until one in 1 / missed searches had none of right matches alone.
-        const double right = std::pow((double)near / problem_.size(), problem_.sampleSize());
+        double right = 0;
+        for (const std::vector<int>& pool : pools_)
+        {
+            const auto near =
+                    std::count_if(pool.begin(), pool.end(), [&](int i) { return squared[i] < inside; });
+            right += std::pow((double)near / pool.size(), problem_.sampleSize()) / pools_.size();
+        }
         wanted_ = right > 0 ? std::log(missed_) / std::log1p(-std::min(right, .999))
                             : std::numeric_limits<double>::max();
         wanted_ = std::max<double>(fewest_, wanted_);
@@ -246,7 +255,7 @@ private:
     const Loss by_, wider_;
     const int fewest_;
     const double missed_;
-    std::vector<int> pool_;
+    std::vector<std::vector<int>> pools_;
     RNG random_;
     std::vector<Proposal> proposals_;
     std::vector<std::pair<double, Model>> best_;  // losses in order, and models
@@ -266,10 +275,11 @@ template <class Problem> void finish(const Problem& problem, Fit<Problem>& fit)
 }
 
 /** The scale of the errors within a distance, by their median (Rousseeuw and Leroy 1987), pixels.
-@param parameters of the model: so many errors are small because it was fitted to them. */
-inline double scaleWithin(const std::vector<double>& squared, double distance, int parameters)
+@param parameters of the model: so many errors are small because it was fitted to them.
+@param least scale, that of refined matches. */
+inline double scaleWithin(
+        const std::vector<double>& squared, double distance, int parameters, double least = .1)
 {
-    const double least = .1;  // of refined matches
     std::vector<double> near;
     for (double error : squared)
         if (error < square(distance))

@@ -41,6 +41,8 @@ bool explainsMore(const std::vector<double>& squared, const std::vector<double>&
 bool isDirectionCertain(const std::vector<double>& squared, const std::vector<double>& parallaxes,
         double limit, const Verdict& verdict)
 {
+    const double certain =
+            -1;  // a turn in place of a move is taken out of the parallaxes, so that little is left to chance
     const int matchesOfDirection = 2;
     Verdict::Marks seen(squared.size()), agree = seen;
     double chances = 0, count = 0;
@@ -57,7 +59,7 @@ bool isDirectionCertain(const std::vector<double>& squared, const std::vector<do
                  others = verdict.places(seen) - verdict.places(agree);
     // The chance is so large here that the matches which do not agree count, too.
     return verdict.logFalseAlarms(seen, agree, matchesOfDirection, chance) + others * std::log10(1 - chance) <
-           Verdict::CERTAIN;
+           certain;
 }
 
 Verdict::Marks withinByMoreThanChance(

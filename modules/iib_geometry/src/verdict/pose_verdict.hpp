@@ -14,7 +14,8 @@ bool explainsMore(const std::vector<double>& squared, const std::vector<double>&
         const Verdict& verdict);
 
 /** Whether the direction of t is significant. Matches without parallax tell nothing about it. A match whose parallax is much longer than the limit
-agrees with a wrong direction by the chance asin(limit / parallax) 2 / pi. */
+agrees with a wrong direction by the chance asin(limit / parallax) 2 / pi.
+@param parallaxes of EpipolarProblem::leastParallaxes(). */
 bool isDirectionCertain(const std::vector<double>& squared, const std::vector<double>& parallaxes,
         double limit, const Verdict& verdict);
 
