@@ -47,30 +47,6 @@ class Files(InFolder):
             write_whole(str(path), b'three')
         self.assertEqual((self.names(), path.read_bytes()), (['a'], b'two'))
 
-    def test_names_beside_it_are_the_users_own(self):
-        mine = [f'a{end}' for end in ('.new', '.tmp', '.partial', '.old')]
-        self.write(*mine)
-        write_whole(str(self.folder / 'a'), b'text')
-        self.expect_precious(*mine)
-        longest = 'x' * 255
-        write_whole(str(self.folder / longest), b'text')
-        self.assertEqual(self.names(), sorted(['a', longest, *mine]))
-
-    @WITH_LINKS
-    def test_rights_links_and_devices(self):
-        target = self.folder / 'disk/a'
-        self.write('disk/a')
-        target.chmod(0o640)
-        for name, to in (('there', 'disk/a'), ('new', 'disk/b')):
-            (self.folder / name).symlink_to(to)
-            write_whole(str(self.folder / name), b'text')
-            self.assertEqual((os.readlink(self.folder / name), (self.folder / to).read_bytes()), (to, b'text'))
-        self.assertEqual(target.stat().st_mode & 0o777, 0o640)
-        write_whole('/dev/null', b'text')
-        for path, message in ((self.folder, 'is a folder'), (self.folder / 'no/a', 'there is no folder')):
-            with self.assertRaisesRegex(OSError, message):
-                write_whole(str(path), b'text')
-
     @WITH_LINKS
     def test_outputs_are_no_inputs(self):
         self.write('a.jpg', 'b.jpg')

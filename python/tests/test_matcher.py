@@ -1,7 +1,5 @@
 import copy
 import pickle
-import subprocess
-import sys
 import time
 import unittest
 
@@ -9,7 +7,7 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import HierarchicalMatcher, MappedIndex
-from support import InFolder, brute_force, cv2, resource, scatter, seconds_until_interrupt, steps_meanwhile, texture
+from support import InFolder, brute_force, cv2, scatter, seconds_until_interrupt, steps_meanwhile, texture
 
 LEVELS = (2, 8, 32, 128)
 
@@ -183,21 +181,3 @@ class MatcherTest(InFolder):
             search(queries)
             block = time.monotonic() - begin
             self.assertLess(seconds_until_interrupt(lambda: search(np.repeat(queries, 200, 0)), block), 60 * block)
-
-
-@unittest.skipIf(resource is None, 'no account of memory on this system')
-class Memory(unittest.TestCase):
-
-    def test_codes_are_kept_once(self):
-        program = """
-import resource, sys
-import numpy as np
-import opencv_iib
-matcher, codes = opencv_iib.HierarchicalMatcher(), np.ones((800000, 128), np.uint8)
-before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-matcher.add(codes)
-unit = 1 if sys.platform == 'darwin' else 1024
-print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * unit / codes.nbytes)
-"""
-        done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True)
-        self.assertLess(float(done.stdout), 1.5, done.stderr)
