@@ -80,7 +80,9 @@ branch_of() {
     */refinement_scene.* | */test_refinement_bits.cpp | */test_propagation.cpp) echo refinement ;;
     */rotation[/.]* | include/opencv2/iib.hpp | */test_match_rotated.cpp | */test_rotated.cpp | */test_orientation.cpp) echo rotation ;;
     */extractor.cpp | */presets.* | */iib/descriptor.hpp) echo presets ;;
-    */test_descriptor_golden.cpp | */test_descriptor_parameters.cpp) echo presets ;;
+    */test_descriptor_golden.cpp | */test_descriptor_parameters.cpp | perf/perf_precomp.hpp | perf/perf_descriptor.cpp) echo presets ;;
+    README.md) echo presets ;;
+    doc/format.md) echo bits ;;
     */kernels/boxes.simd.hpp) echo steps ;;
     src/descriptor/kernels/* | src/descriptor/plan.* | src/descriptor/parameters.* | src/common/bit_io.hpp | */detail/places.hpp) echo kernels ;;
     */test_descriptor_kernels.cpp) echo kernels ;;
@@ -124,12 +126,12 @@ lay() {
     module="$folder/modules/iib"
     rm -rf "$module"
     mkdir -p "$module"
-    here=$(number_of "$1")
+    here=$(number_of "$1") early=""
+    [ "$here" -lt "$(number_of presets)" ] || early=yes # what replaces files before iib-presets is gone
     for part in $branches; do
         tar -C "$root/modules/iib" -T "$work/$part" -c | tar -C "$module" -x
-        if [ -d "$root/upstream/$part" ] && { [ "$part" = "$1" ] || [ "$here" -lt "$(number_of presets)" ]; }; then
-            cp -R "$root/upstream/$part/." "$module"
-        fi
+        [ "$part" != presets ] || early=""
+        if [ -d "$root/upstream/$part" ] && [ -z "$early" ]; then cp -R "$root/upstream/$part/." "$module"; fi
         [ "$part" != "$1" ] || break
     done
     for patch in "$root"/upstream/*.patch; do

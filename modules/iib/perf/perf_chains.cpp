@@ -93,7 +93,7 @@ PERF_TEST_P(IIB_DescribeAkaze, street, testing::ValuesIn(SAME))
 }
 #endif
 
-//! What a program does with an image: finds points by itself and describes them.
+//! Detects and describes.
 struct Chain
 {
     Ptr<Feature2D> detector, descriptor;

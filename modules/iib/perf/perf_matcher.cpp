@@ -87,7 +87,7 @@ PERF_TEST_P(IIB_Match, of_32_bytes,
     time(std::vector<int>(1, 32), 1);
 }
 
-// Mutual best matches that pass the ratio test, as for a pose, of codes of 128 bytes.
+// Mutual matches under a ratio test, of descriptors of 128 bytes.
 typedef perf::TestBaseWithParam<tuple<Method, int>> IIB_MatchPair;  // method, points
 
 PERF_TEST_P(IIB_MatchPair, mutual_and_ratio,

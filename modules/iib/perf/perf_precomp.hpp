@@ -13,7 +13,7 @@ namespace opencv_test {
 using namespace cv::iib;
 using namespace perf;
 
-//! So many threads while the object lives.
+//! Sets the number of threads during its lifetime.
 struct Threads
 {
     const int before;

@@ -11,7 +11,7 @@
 namespace opencv_test { namespace {
 
 #ifdef IIB_PERF_VIDEO
-//! Keeps the image that it is given: the normalized one, if NormalizedDetector asks.
+//! Stores its image.
 class KeepsImage : public Feature2D
 {
 public:
@@ -87,7 +87,7 @@ PERF_TEST_P(IIB_Refine, vga_300_matches, Step::all())
     SANITY_CHECK_NOTHING();
 }
 
-// From the matches of two pictures to further ones.
+// Propagation of matches.
 typedef perf::TestBaseWithParam<int> IIB_Propagate;  // points
 
 PERF_TEST_P(IIB_Propagate, moved_and_by_night, testing::Values(1000, 2000, 4000))

@@ -36,7 +36,7 @@ TEST(IIB_InstructionSets, the_widest_is_used)
     EXPECT_EQ(widestInstructionSet(), hammingKernels().instructionSet);
 }
 
-// Tables in registers are faster, up to twice, but where one instruction counts the bits of whole vectors.
+// Byte lookups are faster, up to twice, unless one instruction counts the bits of a vector.
 TEST(IIB_InstructionSets, tables_from_SSE4_2_up_to_AVX512_SKX)
 {
     const String set = hammingKernels().instructionSet;
@@ -58,7 +58,7 @@ bool tellsWhatIsInUse()
 //! The upper halves of ymm0 to ymm15 and of zmm0 to zmm15.
 __attribute__((target("xsave"))) unsigned upperHalvesInUse() { return (unsigned)_xgetbv(1) & 0x44; }
 
-// In use, they make all code without AVX that follows much slower: presets cost twice as much as they had to.
+// Dirty upper halves slow down all code without AVX that follows.
 TEST(IIB_InstructionSets, calls_leave_no_upper_halves_in_use)
 {
     if (!tellsWhatIsInUse())
@@ -80,7 +80,7 @@ TEST(IIB_InstructionSets, calls_leave_no_upper_halves_in_use)
 }
 #endif
 
-// What the environment took away must be gone: else the runs of all suites under pins would repeat the same kernels.
+// Else runs under pins would all test the same kernels.
 TEST(IIB_InstructionSets, pins_work)
 {
     const char* pin = getenv("OPENCV_CPU_DISABLE");

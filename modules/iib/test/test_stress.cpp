@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-// Much at a time, each result compared with one got the easy way; minutes and gigabytes, with --test_tag_enable=verylong.
+// Large inputs, compared with small ones; minutes and gigabytes, with --test_tag_enable=verylong.
 
 #include "support/describe.hpp"
 

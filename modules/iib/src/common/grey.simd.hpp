@@ -15,9 +15,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_END
 #include "vectors.simd.hpp"
 
 namespace cv { namespace iib {
-
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
 namespace {
 
 constexpr int BLUE = 3735, GREEN = 19235, RED = 9798, SHIFT = 15;  // as 15-bit fractions their sum is 1
@@ -105,7 +103,6 @@ void greyRows(const Mat& image, Mat& grey, const Range& rows)
 }
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-
 }}  // namespace cv::iib
 
 #endif

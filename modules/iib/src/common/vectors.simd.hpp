@@ -54,9 +54,7 @@
 #endif
 
 namespace cv { namespace iib {
-
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
 namespace {
 
 /* Operators and lane numbers for all versions from 4.6 on. OpenCV 4.11 (for NEON earlier) replaced operators by functions. If
@@ -316,7 +314,5 @@ inline void freeUpperHalves()
 }
 
 }  // namespace
-
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-
 }}  // namespace cv::iib

@@ -29,7 +29,7 @@ TEST(IIB_Boxes, bits_as_the_oracle)
             }
 }
 
-// The last row and column of an odd image belong to squares whose other half a reflection would make.
+// The last row and column of an odd image are in squares that reach beyond the image.
 TEST(IIB_Boxes, no_pixel_from_outside_counts_when_clamped)
 {
     const Mat odd = texture(Size(151, 131), CV_8U, 3), even = odd(Rect(0, 0, 150, 130));
@@ -63,7 +63,7 @@ TEST(IIB_Boxes, large_regions)
     }
 }
 
-// Stripes have the largest gradients at every pixel: over the box in the middle their sum leaves 32 bits.
+// Stripes have the largest gradients at every pixel: their sum over the middle box exceeds 32 bits.
 TEST(IIB_Boxes, largest_sums)
 {
     Mat image(1500, 1500, CV_8U, Scalar(0));
@@ -93,7 +93,7 @@ TEST(IIB_Boxes, rotated)
             }
 }
 
-// A box of less than half a pixel is a cell all the same.
+// Boxes of less than half a pixel.
 TEST(IIB_Boxes, rotated_small_regions)
 {
     const Mat image = texture(Size(60, 50), CV_8U, 14);
@@ -106,7 +106,7 @@ TEST(IIB_Boxes, rotated_small_regions)
     }
 }
 
-// Turned by 45 degrees boxes reach farthest beyond the region; in so large a one, pixels of a too small area show.
+// Boxes reach farthest beyond the region at 45 degrees.
 TEST(IIB_Boxes, rotated_large_regions)
 {
     const Mat image = texture(Size(700, 640), CV_8U, 11);

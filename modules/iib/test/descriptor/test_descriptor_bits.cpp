@@ -92,7 +92,7 @@ TEST(IIB_Bits, cells_of_four_pixels_and_of_five)
                 {KeyPoint(40, 60, 7), KeyPoint(71, 50, 7), KeyPoint(90, 75.5f, 14), KeyPoint(60, 65, 14)});
 }
 
-// Sums of 16-bit pixels leave 32 bits soon: cells are put together from parts.
+// Sums of 16-bit pixels exceed 32 bits: cells are added up from parts.
 TEST(IIB_Bits, large_regions_of_16_bit_images)
 {
     const Mat image = texture(Size(420, 400), CV_16U, 5);
@@ -100,7 +100,7 @@ TEST(IIB_Bits, large_regions_of_16_bit_images)
     expectOracle(*iib, image, scatter(image.size(), 6, 300.f, 1500.f, 1));
 }
 
-// Regions at which products of level 1 or 2 just leave 32 bits, where doubles take over.
+// Products of level 1 or 2 just exceed 32 bits.
 TEST(IIB_Bits, sums_at_the_edge_of_32_bits)
 {
     for (int mapping = IIB::MAPPING_MEAN; mapping <= IIB::MAPPING_PAIRWISE; mapping++)
@@ -237,7 +237,7 @@ TEST(IIB_Property, rotated_with_the_image)
             }
             const int bits = differingBits(expected, describe(*iib, rotatedImage, rotated));
             EXPECT_EQ(0, bits);
-            // and it is the angle that does it
+            // with wrong angles, bits differ
             for (KeyPoint& kp : rotated)
                 kp.angle = std::fmod(kp.angle + 90, 360.f);
             EXPECT_GT(differingBits(expected, describe(*iib, rotatedImage, rotated)),

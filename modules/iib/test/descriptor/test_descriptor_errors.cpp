@@ -129,7 +129,7 @@ TEST(IIB_Errors, detectors_without_a_scale_factor)
             Error::StsBadArg, "Feature2D.IIB", [] { IIB::scaleFactorFor(Ptr<Feature2D>(IIB::create())); });
 }
 
-// detect() would come back to itself and overflow the stack.
+// detect() would recurse without end.
 TEST(IIB_Errors, no_extractor_detects_by_itself)
 {
     const Ptr<IIB> a = IIB::create(), b = IIB::create();

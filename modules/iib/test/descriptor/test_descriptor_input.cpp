@@ -11,7 +11,7 @@ namespace opencv_test { namespace {
 
 const Size SIZE(180, 160);
 
-//! Parameters that take different ways through the code.
+//! Parameters that use different code paths.
 std::vector<Ptr<IIB>> variousExtractors()
 {
     std::vector<Ptr<IIB>> v;
@@ -152,7 +152,7 @@ TEST(IIB_Input, float_colour_weighs_channels_as_cvtColor)
         }
 }
 
-// FLT_MAX is a number, and usual for "no depth".
+// FLT_MAX often means "no depth".
 TEST(IIB_Input, the_largest_float_is_finite)
 {
     const Ptr<IIB> iib = IIB::create(1.f, 4, 15, IIB::MAPPING_MEAN, false, false, 1);
@@ -187,7 +187,7 @@ TEST(IIB_Input, descriptors_may_go_where_the_image_is)
     }
 }
 
-//! What doc/format.md says of colour.
+//! The grey of doc/format.md.
 Mat plainGrey(const Mat& image)
 {
     Mat grey(image.size(), image.depth());

@@ -11,7 +11,7 @@ namespace opencv_test { namespace {
 
 using namespace cv::iib;
 
-// Naive counterparts of the kernels, for this machine's instruction set; ctest pins the others.
+// Kernels beside naive counterparts.
 
 template <typename T> std::vector<T> randomRow(Integers& random, int width, int limit)
 {
@@ -81,7 +81,7 @@ TEST(IIB_DescriptorKernels, cell_edges)
         }
 }
 
-//! Of all levels, finest first.
+//! Writes the bits of all levels, finest first.
 template <typename Sum>
 void writeBits(int mapping, const CellGrid<Sum>& cells, const std::vector<LevelShape>& shapes,
         const CellEdges& edges, int level, uchar* descriptor)
@@ -93,7 +93,7 @@ void writeBits(int mapping, const CellGrid<Sum>& cells, const std::vector<LevelS
     writeBits(mapping, parents, shapes, edges, level - 1, descriptor);
 }
 
-//! Of random cells; sums that fit both kinds of kernels.
+//! The bits of cells with these sums.
 template <typename Sum>
 std::vector<uchar> bitsOf(int mapping, const std::vector<int>& values, const std::vector<LevelShape>& shapes,
         const CellEdges& edges)

@@ -115,7 +115,7 @@ TEST(IIB_KeyPoints, lists_of_images_and_kinds_of_outputs)
     EXPECT_EQ(0, differingBits(codes[0].row(0), Mat(row)));
 }
 
-// Small ones are raised to a pixel a cell.
+// Small regions are raised to a pixel a cell.
 TEST(IIB_KeyPoints, tiny_and_huge_sizes)
 {
     const Ptr<IIB> iib = IIB::create(2.f, 1, 63, IIB::MAPPING_QUARTILE);
@@ -177,7 +177,7 @@ TEST(IIB_Border, reflects_the_image)
     const Mat image = texture(SIZE, CV_8U, 8);
     Mat larger;
     cv::copyMakeBorder(image, larger, 64, 64, 64, 64, cv::BORDER_REFLECT_101);
-    // Gradients of the border's pixels differ, as their neighbours repeat those of the image.
+    // intensity alone: gradients at the border differ
     const Ptr<IIB> iib = IIB::create(1.f, 4, IIB::CHANNEL_INTENSITY);
     std::vector<KeyPoint> keypoints = scatter(SIZE, 300, 8.f, 60.f, 9), moved;
     keypoints.erase(std::remove_if(keypoints.begin(), keypoints.end(),

@@ -109,7 +109,7 @@ Mat converted(const Mat& grey, int type)
     return image;
 }
 
-// ORB, BRISK and SIFT take 8 bits alone, and ORB computed garbage of CV_32FC3.
+// ORB, BRISK and SIFT only support 8 bits; ORB misreads CV_32FC3.
 TEST(IIB_Detector, images_of_every_type)
 {
     Mat grey = scene(Size(240, 200), 3);
@@ -138,7 +138,7 @@ TEST(IIB_Detector, images_of_every_type)
         }
 }
 
-// What an extractor within a NormalizedDetector is given stays as it is: its bits would change.
+// An extractor within a NormalizedDetector gets the unchanged image.
 TEST(IIB_Detector, extractors_inside_get_all_of_an_image)
 {
     const Mat image = texture(Size(200, 180), CV_16U, 3);

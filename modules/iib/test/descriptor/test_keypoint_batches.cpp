@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../support/describe.hpp"
+#include "../support/textures.hpp"
 
 #include "../../src/descriptor/keypoint_batches.hpp"
 
@@ -78,7 +78,7 @@ TEST(IIB_KeyPointBatches, keypoints_that_are_not_asked_for_stay_out)
     EXPECT_EQ(even, found);
 }
 
-// Whether any two pieces could still be cut apart by a straight line is asked point by point.
+// Every row and column of a batch is covered by a region.
 TEST(IIB_KeyPointBatches, gaps_cut_batches)
 {
     for (int seed = 0; seed < 50; seed++)

@@ -32,7 +32,7 @@ struct MatchedPair : public RotatedPair
                 images[0], keypoints[0], images[1], keypoints[1], iib, matcher, matches, rotation);
     }
 
-    //! By hand: the first image upright, all keypoints of the second with one angle.
+    //! Matches with the first image upright and one angle for all keypoints of the second.
     std::vector<DMatch> matchedWith(float angle, const DescriptorMatcher& matcher) const
     {
         std::vector<KeyPoint> angled[] = {keypoints[0], keypoints[1]};
@@ -261,7 +261,7 @@ TEST(IIB_MatchRotated, errors)
     EXPECT_EQ(77, second[0].angle);
 }
 
-// Half of it, for the image of half the size, would be 0.
+// At half the image's size it would be 0.
 TEST(IIB_MatchRotated, the_least_size_is_one)
 {
     RotatedPair pair(60);

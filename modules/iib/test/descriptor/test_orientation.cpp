@@ -26,7 +26,7 @@ TEST(IIB_Orientation, as_atan2_for_all_gradients_of_8_bits)
     EXPECT_EQ(0, oracle::orientation(0, 0));
 }
 
-// Every gradient that an 8-bit image can have, by this machine's kernel: both components are even, or both are odd.
+// All gradients of 8-bit images: both components are even, or both are odd.
 TEST(IIB_Orientation, kernel_for_all_gradients_of_8_bits)
 {
     const int largest = 4 * 255, count = largest + 1;
@@ -108,7 +108,7 @@ TEST(IIB_GradientOrientation, bits_as_the_oracle)
             expectOracle(*iib, image, keypoints);
         }
     }
-    // Nothing but extra channels: upright.
+    // with extra channels alone, regions stay upright
     const Ptr<IIB> maps = IIB::create(1.f, 3, 0, IIB::MAPPING_MEAN, false, false, 1);
     const std::vector<Mat> extra(1, texture(size, CV_8U, 3));
     const std::vector<KeyPoint> keypoints = scatter(size, 50, 8.f, 60.f, 4);

@@ -39,7 +39,7 @@ TEST(IIB_Rotated, sine_and_cosine_are_exact)
     }
 }
 
-// To the last place, where the C library of another machine may differ (glibc 2.36's does, for all of these).
+// glibc 2.36 differs in the last place for all of these.
 TEST(IIB_Rotated, sine_and_cosine_have_the_same_bits_everywhere)
 {
     const struct
@@ -60,7 +60,7 @@ TEST(IIB_Rotated, sine_and_cosine_have_the_same_bits_everywhere)
     }
 }
 
-// A place of the sine whose rounding moves the samples of a grid.
+// A sine whose rounding moves the samples of a grid.
 TEST(IIB_Rotated, grid_has_the_same_steps_everywhere)
 {
     const KeyPoint keypoint(500, 400, 4246.43457f, 43.3051186f);
@@ -74,7 +74,7 @@ TEST(IIB_Rotated, grid_has_the_same_steps_everywhere)
     expectOracle(*iib, texture(grid.image, CV_8U, 5), {keypoint});
 }
 
-// What is removed has a corner outside.
+// Removed regions have a corner outside.
 TEST(IIB_Rotated, border_drop_looks_at_the_rotated_region)
 {
     const Size size(120, 80);
@@ -113,7 +113,7 @@ TEST(IIB_Rotated, whole_turns_change_no_bits)
     EXPECT_EQ(0, differingBits(bits.row(0), bits.row(1)));
 }
 
-// Maps may share memory and yet differ, in their step or their type.
+// They differ in step or type.
 TEST(IIB_Rotated, maps_that_begin_at_the_same_byte_are_not_the_same)
 {
     const Size size(400, 300);

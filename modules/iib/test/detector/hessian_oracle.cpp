@@ -50,7 +50,7 @@ Mat_<float> responsesOf(const Map& m, double sigma)
     return result;
 }
 
-//! Whether no neighbour in place and scale is larger, and none that comes earlier is as large.
+//! Whether no neighbour in place and scale is larger, and no earlier one is equal.
 bool isLargest(const std::vector<Mat_<float>>& responses, int scale, int y, int x)
 {
     const float value = responses[scale](y, x);

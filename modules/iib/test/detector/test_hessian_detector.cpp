@@ -109,7 +109,7 @@ TEST(IIB_HessianDetector, finds_a_blob_where_it_is_and_how_large)
         }
 }
 
-// SIFT finds .96 again within a quarter of a pixel and .98 within 1.5 pixels.
+// for comparison, SIFT: .96 within a quarter of a pixel, .98 within 1.5 pixels
 TEST(IIB_HessianDetector, keypoints_move_with_the_picture)
 {
     const Mat image = relit(scene(Size(520, 400), 9), 10);

@@ -52,7 +52,7 @@ struct ScanData
     CodePairs pairs() const { return {layout, queries, blocks.data(), trains.rows, 0}; }
 };
 
-// Code by code; and a whole block at once, out of rows that are not continuous.
+// Single codes, and whole blocks from rows that are not continuous.
 TEST(IIB_Hamming, layout_comes_back)
 {
     for (CodePacking packing : {PACKING_ADDERS, PACKING_TABLES})

@@ -8,7 +8,7 @@
 
 namespace opencv_test { namespace {
 
-// A descriptor's width cut into levels: coarse ones of 1/8 and 1/4, the rest last.
+// Levels of 1/8, 1/4 and the rest of a descriptor.
 std::vector<int> levelsOf(int bytes)
 {
     std::vector<int> levels;
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Sizes,
         testing::Combine(testing::Values(0, 1, 7, 8, 9, 63, 64, 65, 1000),
                 testing::Values(1, 2, 10, 32, 43, 61, 64, 170, 682)));
 
-// Several images, one of them empty, with everything at once.
+// Several images, one of them empty, with all combinations of settings.
 TEST(IIB_Matcher, all_together_as_the_oracle)
 {
     MatcherOracle oracle = oracleOfSeveralImages();
@@ -146,7 +146,7 @@ TEST_P(IIB_MatcherClone_Rows, are_not_shared)
         expectEqual(expected, actual);
         ASSERT_EQ(1u, same.getTrainDescriptors().size());
 
-        // in the same places of memory, were they shared
+        // would overwrite shared memory
         same.add(third);
         std::vector<DMatch> best;
         changed.match(second, best);

@@ -53,7 +53,7 @@ INSTANTIATE_TEST_CASE_P(/**/, IIB_Matcher_Chunks,
                 testing::Values((int)HierarchicalMatcher::EXACT, (int)HierarchicalMatcher::THRESHOLD,
                         (int)HierarchicalMatcher::ADAPTIVE)));
 
-// Chunks for the cache are no part of ADAPTIVE's answers, whose limits come down every 2048 codes.
+// Results of ADAPTIVE do not depend on the chunks for the cache, but on groups of 2048 codes.
 TEST(IIB_Matcher_Adaptive, does_not_depend_on_chunks)
 {
     const Mat queries = randomDescriptors(1, 30, 64), trains = randomDescriptors(2, 5000, 64);

@@ -94,7 +94,7 @@ TEST(IIB_MatcherEdges, empty_image_among_several_is_skipped)
     EXPECT_EQ(1, matches[0].imgIdx);
 }
 
-// Also where the float is above the hundredth that it stands for.
+// Also if the float is above the decimal number.
 TEST(IIB_MatcherEdges, ties_at_any_hundredth_are_refused)
 {
     const Mat zero = codesOfBits({0}, 13);
@@ -248,7 +248,7 @@ struct LittleMemory
     ~LittleMemory() { setrlimit(RLIMIT_AS, &before); }
 };
 
-// Only stages take pairs one by one and need them unpacked: 128 MB here.
+// Without stages, codes are not unpacked: 128 MB here.
 TEST(IIB_MatcherEdges, long_codes_take_no_second_copy)
 {
     const int bytes = 1 << 16, rows = 2048;
@@ -293,7 +293,7 @@ TEST(IIB_MatcherEmpty, without_train_rows_the_rows_are_empty)
     EXPECT_EQ(0, cvtest::norm(indices, Mat(5, 2, CV_32S, Scalar(-1)), NORM_INF));
 }
 
-// As BFMatcher, also where knnMatch leaves its results as they were.
+// As BFMatcher, whose knnMatch may leave its results unchanged.
 TEST(IIB_MatcherEmpty, without_queries_or_images_as_every_matcher)
 {
     const Ptr<DescriptorMatcher> matchers[] = {createMatcher(), BFMatcher::create(NORM_HAMMING)};
@@ -352,7 +352,7 @@ TEST(IIB_MatcherEmpty, masks_of_no_rows_fit)
     EXPECT_EQ(0, indices.rows);
 }
 
-// Rows of a thousand million of -1 would take all memory.
+// A thousand million columns of -1 would take all memory.
 TEST(IIB_MatcherEdges, more_neighbours_than_there_can_be_are_refused)
 {
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();

@@ -63,7 +63,7 @@ TEST(IIB_MatcherParameters, damaged_values_throw_and_are_named)
     }
 }
 
-// Unless OpenCV makes other numbers of them, in 32 bits, before anyone can see it.
+// If this OpenCV reads them as 64-bit numbers.
 TEST(IIB_MatcherParameters, whole_numbers_beyond_32_bits)
 {
     const FileStorage probe("%YAML:1.0\n---\nnumber: 4294967304\n", FileStorage::READ | FileStorage::MEMORY);
@@ -170,7 +170,7 @@ TEST(IIB_MatcherCreate, without_rows)
     EXPECT_EQ(4, images[2].rows);
 }
 
-// Fresh, with images that have no rows, and cleared.
+// New, with an image without rows, and cleared.
 TEST(IIB_MatcherClone, of_a_matcher_without_rows)
 {
     const Mat codes = randomDescriptors(1, 5, 42);

@@ -15,7 +15,7 @@ typedef cv::Mat_<int> Map;
 //! Naive local normalization of CV_8U or CV_16U, with the library's integers.
 cv::Mat normalizeLocally(const cv::Mat& grey, double sigma);
 
-//! Its definition, with Gaussian filters in floats: 128 + 40 (I - G*I) / (sqrt(G*(I - G*I)^2) + 2) of CV_8U.
+//! By definition, with Gaussian filters in floats: 128 + 40 (I - G*I) / (sqrt(G*(I - G*I)^2) + 2) of CV_8U.
 cv::Mat normalizeByDefinition(const cv::Mat& grey, double sigma);
 
 }  // namespace oracle

@@ -22,7 +22,7 @@ public:
     Mat seen;
 };
 
-//! What a detector in a NormalizedDetector sees.
+//! The image that NormalizedDetector passes to its detector.
 inline Mat normalized(InputArray image, float sigma)
 {
     const Ptr<CaptureDetector> capture = makePtr<CaptureDetector>();

@@ -89,7 +89,7 @@ TEST(IIB_Normalization, does_not_depend_on_how_pixels_are_stored)
     EXPECT_EQ(0, differingBits(expected, normalized(image.getUMat(ACCESS_READ), 4.f)));
 }
 
-// The exact pixels, which no build or machine may change: keypoints of images in a map would move.
+// Exact pixels, on every build and machine.
 TEST(IIB_Normalization, golden_hash)
 {
     const Mat image = normalized(texture(Size(321, 243), CV_8U, 1), 4.f);

@@ -29,7 +29,7 @@ struct RealPair
         iib->compute(images[1], keypoints, trains);
     }
 
-    //! The train code found for each query within 3 pixels, -1 where there is none.
+    //! The train code of each query within 3 pixels, or -1.
     std::vector<int> correct(const Ptr<HierarchicalMatcher>& matcher) const
     {
         std::vector<DMatch> matches;
@@ -60,7 +60,7 @@ TEST(IIB_Real, threshold_is_the_papers_rule)
     }
 }
 
-// What the header says of ADAPTIVE, on both pairs; its bound was tuned on other images.
+// ADAPTIVE's margin was tuned on other images.
 TEST(IIB_Real, adaptive_keeps_the_correct_matches)
 {
     for (int second : {2, 3})

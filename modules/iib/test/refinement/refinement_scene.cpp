@@ -47,7 +47,7 @@ RefinementScene::RefinementScene(int seed)
     Integers integers(seed);
     const auto upTo = [&](double limit) { return limit * integers.between(-1000, 1001) / 1000; };
     const double angle = upTo(5) * CV_PI / 180, c = std::cos(angle), s = std::sin(angle);
-    // In braces, since the order in which a call's arguments are drawn is the compiler's.
+    // braces fix the order in which random arguments are drawn
     linear = Matx22d(c, -s, s, c) * (Matx22d::eye() + Matx22d{upTo(.1), upTo(.1), upTo(.1), upTo(.1)});
     const Vec2d centre(SIZE.width / 2., SIZE.height / 2.);
     shift = centre + Vec2d{upTo(3), upTo(3)} - linear * centre;

@@ -20,14 +20,14 @@ struct RefinementScene
     Vec2d shift;
 
     explicit RefinementScene(int seed);
-    //! Where a point of the first image is in the second.
+    //! The true place of a point of the first image in the second.
     Point2d truth(const Point2f& point) const;
 
     //! The scene of seed 7, which is made once.
     static const RefinementScene& seven();
 };
 
-//! What refineMatches() and propagateMatches() give, with the matches that it is of.
+//! Results of refineMatches() and propagateMatches(), with their matches.
 struct Refined
 {
     std::vector<DMatch> matches;
@@ -38,10 +38,10 @@ Refined refine(const Mat& image1, const std::vector<KeyPoint>& keypoints1, const
         const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches);
 Refined refine(const RefinementScene& scene);
 
-//! That the first of `actual` are as expected.
+//! Expects that `actual` begins with `expected`.
 void expectSame(const Refined& expected, const Refined& actual);
 
-//! How many standard deviations an error is long, Mahalanobis' distance. @param c xx, xy and yy.
+//! Mahalanobis distance of an error. @param c xx, xy and yy.
 double inSigmas(const Point2d& error, const Point3d& c);
 
 }  // namespace opencv_test

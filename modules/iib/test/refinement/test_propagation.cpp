@@ -89,7 +89,7 @@ TEST_F(IIB_Propagation, finds_what_is_missing)
     }
 }
 
-// Right starts are no reason to stop.
+// Exact start places.
 TEST_F(IIB_Propagation, leads_on_in_identical_images)
 {
     const std::vector<KeyPoint>& keypoints = scene().keypoints[0];
@@ -137,7 +137,7 @@ TEST_F(IIB_Propagation, wrong_matches_lead_nowhere)
             propagate(some(3), other.images[1], scene().keypoints[0], scene().keypoints[1]).matches.size());
 }
 
-// What predicts takes turns and scales from the matches that were refined.
+// Predictions use the rotation and scale of refined matches.
 TEST_F(IIB_Propagation, follows_turned_and_scaled_surroundings)
 {
     Mat turned;
@@ -161,7 +161,7 @@ TEST_F(IIB_Propagation, follows_turned_and_scaled_surroundings)
     EXPECT_GT(right, .98 * r.matches.size());
 }
 
-// Two keypoints of the second image at each place, and so much noise that many patches hardly agree.
+// Two keypoints at each place of the second image, and strong noise.
 TEST_F(IIB_Propagation, takes_a_keypoint_once_and_only_what_agrees_well)
 {
     Mat noise(scene().images[1].size(), CV_16S), noisy;
@@ -182,7 +182,7 @@ TEST_F(IIB_Propagation, takes_a_keypoint_once_and_only_what_agrees_well)
     }
 }
 
-// Far more keypoints than the image can hold: work grows with them, not with their square (40 seconds for these).
+// Many keypoints at one place: quadratic work would take 40 seconds.
 TEST_F(IIB_Propagation, many_keypoints_at_one_place_take_no_time)
 {
     std::vector<KeyPoint> first = scene().keypoints[0], second = scene().keypoints[1];

@@ -59,7 +59,7 @@ void addStill(
     }
 }
 
-// All bars of this suite are of issue "From matches to measurements"; 39 and 86 % of normally distributed errors are
+// 39 and 86 % of normally distributed errors are
 // inside the ellipses of one and two sigma.
 TEST(IIB_RefinementAccuracy, errors_bias_and_covariances)
 {
@@ -159,7 +159,7 @@ TEST(IIB_RefinementAccuracy, white_noise)
     }
 }
 
-// Along a straight edge there is noise alone to match: points stay about where they begin, half a pixel off, and say so.
+// Along a straight edge only noise can match: points stay about half a pixel off, with large covariances.
 TEST(IIB_RefinementAccuracy, along_straight_edges)
 {
     for (double degrees : {0., 30., 90.})
@@ -214,7 +214,7 @@ TEST(IIB_RefinementAccuracy, photographs_in_other_exposure)
     EXPECT_GT(errors.inside(2), .75);
 }
 
-// One camera, a lamp on other sides: shading moves, and every error is of that.
+// A still camera with lamps on other sides: errors come from shading.
 TEST(IIB_RefinementAccuracy, photographs_by_other_lamps)
 {
     Errors errors;

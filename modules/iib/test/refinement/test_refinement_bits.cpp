@@ -114,7 +114,7 @@ private:
         return values;
     }
 
-    //! Of products times a Gaussian of 8 pixels around the centre, whose sum is 1.
+    //! Sum of products, weighted by a Gaussian of 8 pixels whose sum is 1.
     static double sum(const std::vector<double>& a, const std::vector<double>& b)
     {
         double weights = 0, result = 0;
@@ -145,7 +145,7 @@ private:
 };
 
 // Matches near the truth, and some that are wrong by 0 to 4 pixels or altogether. Places agree within .05 pixels,
-// similarities within .06: integers and the last steps, which the library leaves out, are the difference.
+// similarities within .06: the library uses integers and fewer steps.
 TEST(IIB_RefinementOracle, agrees_with_the_documentation)
 {
     const RefinementScene& scene = RefinementScene::seven();

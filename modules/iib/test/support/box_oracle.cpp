@@ -22,7 +22,7 @@ const struct
     int n, side, reach;
 } GRIDS[] = {{3, 32, 24}, {5, 24, 28}, {7, 16, 30}, {9, 8, 32}, {7, 6, 12}};
 
-//! What boxes sum, pixel by pixel; the last two for rotation.
+//! The values that boxes sum; the last two are for rotation.
 enum Value
 {
     ABS_X,
@@ -160,7 +160,7 @@ std::vector<int> valuesInUse(const IIB& iib)
     return values;
 }
 
-//! Bits 3 and 4, which are of one box.
+//! Bits 3 and 4, from one box.
 bool ownBit(const Box& b, int value, int bit)
 {
     switch (value)
@@ -171,7 +171,7 @@ bool ownBit(const Box& b, int value, int bit)
     }
 }
 
-//! Bits 0 to 2, of two by two boxes.
+//! Bits 0 to 2, from 2 x 2 boxes.
 bool quadBit(const Box* const q[4], int value, int bit)
 {
     const float a = q[0]->mean[value], b = q[1]->mean[value], c = q[2]->mean[value], d = q[3]->mean[value];

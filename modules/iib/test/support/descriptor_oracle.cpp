@@ -89,7 +89,7 @@ struct SupportRegion
     }
 };
 
-//! An edge among pixels that count: [0, limit), or also once their reflections on both sides.
+//! An edge in [0, limit], or within one reflection on either side.
 int edge(double start, double side, int k, int n, int limit, bool reflect)
 {
     const double least = reflect ? 1 - limit : 0, most = reflect ? 2 * limit - 1 : limit;
@@ -111,7 +111,7 @@ Cell uprightCell(const Channel& c, const SupportRegion& r, int n, int row, int c
 
 int64 clampTo(int64 v, int limit) { return std::min<int64>(std::max<int64>(v, 0), limit - 1); }
 
-//! Centre of a grid of points, in 2^-17 pixels; pixel 0 begins at 0. What is farther than any image is as far.
+//! Centre of a grid of points, in 2^-17 pixels; pixel 0 begins at 0. Clamped to 2^29 pixels.
 int64 fixedPoint(double centre)
 {
     const double far = 1 << 29;
@@ -311,7 +311,7 @@ void appendLevel(std::vector<uchar>& bytes, const std::vector<bool>& bits)
         bytes[start + i / 8] |= (uchar)((int)bits[i] << i % 8);
 }
 
-//! By which a keypoint is described; -1 if it is upright.
+//! Angle of a keypoint's description; -1: upright.
 float angleOf(const IIB& iib, const Mat& grey, const KeyPoint& kp, size_t rank)
 {
     if (iib.getOrientation() == IIB::ORIENTATION_GRADIENT && iib.getChannels() != 0)

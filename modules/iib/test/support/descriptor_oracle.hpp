@@ -28,7 +28,7 @@ std::vector<Channel> channelsOf(
 cv::Mat describe(const cv::iib::IIBDescriptorExtractor& iib, const cv::Mat& grey,
         const std::vector<cv::Mat>& extra, const std::vector<cv::KeyPoint>& keypoints);
 
-//! Sobel's, of such pixels.
+//! Sobel 3x3 of such pixels.
 cv::Point gradient(const cv::Mat& image, int y, int x);
 
 //! Up to two reflections by BORDER_REFLECT_101; pixel 0 beyond.

@@ -17,7 +17,7 @@ Mat readIllumination(const String& name, int flags = IMREAD_GRAYSCALE);
 //! Nine numbers of a text file; the identity if there is no such file.
 Matx33d readHomography(const String& file);
 
-//! The scene by another light: dimmed, from the side, with the camera's curve and noise.
+//! The scene under changed illumination: dimmed, from the side, with a response curve and noise.
 Mat relit(const Mat& image, int seed);
 
 //! For setSelection(): up to `count` quads of levels 1 to 5, each with some of the bits that its channel may have
@@ -25,7 +25,7 @@ Mat relit(const Mat& image, int seed);
 //! @param ends of their rows and columns on each level
 Mat_<int> randomSelection(int count, const std::vector<int>& ends, const std::vector<int>& masksOfChannels);
 
-//! How many matches lead at most 3 pixels away from where a homography takes their point.
+//! Number of matches within 3 pixels of their place by a homography.
 int countCorrect(const std::vector<DMatch>& matches, const std::vector<KeyPoint>& queries,
         const std::vector<KeyPoint>& trains, const Matx33d& homography = Matx33d::eye());
 

@@ -8,7 +8,7 @@
 
 namespace opencv_test {
 
-// Pictures and keypoints that are the same on every machine: made of integers alone.
+// Pictures and keypoints made of integers, the same on every machine.
 
 //! Pseudorandom integers, the same everywhere (SplitMix64).
 class Integers

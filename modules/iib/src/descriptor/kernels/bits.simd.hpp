@@ -9,9 +9,7 @@
 #include "vectors.simd.hpp"
 
 namespace cv { namespace iib {
-
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
 namespace {
 
 //! Lanes that are mapped at a time, one for each channel of a quad.
@@ -279,7 +277,5 @@ template <typename Cell> BitsKernels<Cell> bitsKernels()
 }
 
 }  // namespace
-
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-
 }}  // namespace cv::iib

@@ -8,9 +8,7 @@
 #include "boxes.hpp"
 
 namespace cv { namespace iib {
-
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
 namespace {
 
 //! v_zip for pairs of values.
@@ -398,7 +396,5 @@ template <typename T> BoxSumKernels<T> boxSumKernels()
 }
 
 }  // namespace
-
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-
 }}  // namespace cv::iib

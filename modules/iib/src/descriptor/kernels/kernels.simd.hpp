@@ -19,7 +19,6 @@ CV_CPU_OPTIMIZATION_NAMESPACE_END
 #include "rotated_samples.simd.hpp"
 
 namespace cv { namespace iib {
-
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 
 const DescriptorKernels& descriptorKernels()
@@ -39,7 +38,6 @@ const BoxKernels& boxKernels()
 }
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-
 }}  // namespace cv::iib
 
 #endif

@@ -7,9 +7,7 @@
 #include "rows.simd.hpp"
 
 namespace cv { namespace iib {
-
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
 namespace {
 
 //! Products with a sampleFactor(); 16-bit factors, since 32-bit products are slow.
@@ -172,7 +170,5 @@ template <typename T> RotatedSampleKernels<T> rotatedSampleKernels()
 }
 
 }  // namespace
-
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-
 }}  // namespace cv::iib

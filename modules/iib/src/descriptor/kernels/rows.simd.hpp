@@ -8,9 +8,7 @@
 #include "vectors.simd.hpp"
 
 namespace cv { namespace iib {
-
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
 namespace {
 
 inline v_int16 addModulo(const v_int16& a, const v_int16& b) { return v_add_wrap(a, b); }
@@ -245,7 +243,5 @@ void sumRowOf16Bit(const int* const planes[GROUP_CHANNELS], int width, const uns
 template <typename T> RowKernels<T> rowKernels() { return {imageChannelRows<T>, widenRow, widenRow}; }
 
 }  // namespace
-
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-
 }}  // namespace cv::iib

@@ -9,9 +9,7 @@
 // Vector operations of the descriptor's kernels alone, with raw intrinsics.
 
 namespace cv { namespace iib {
-
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
 namespace {
 
 /* Comparison, and moves between lanes. */
@@ -357,7 +355,5 @@ private:
 #endif
 
 }  // namespace
-
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-
 }}  // namespace cv::iib

@@ -15,9 +15,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_END
 #include "../../common/vectors.simd.hpp"
 
 namespace cv { namespace iib {
-
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
 namespace {
 
 void centre(const uchar* pixels, short* out, int width)
@@ -147,7 +145,6 @@ const DetectorKernels& detectorKernels()
 }
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-
 }}  // namespace cv::iib
 
 #endif

@@ -16,7 +16,6 @@ CV_CPU_OPTIMIZATION_NAMESPACE_END
 
 namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
 namespace {
 
 /** The COUNT nearest of each query and, if needed, the nearest of each train code. A pair's key is its distance, followed by

@@ -15,9 +15,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_END
 #include "../../common/vectors.simd.hpp"
 
 namespace cv { namespace iib {
-
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
 namespace {
 
 void widen(const uchar* pixels, short* out, int width)
@@ -167,7 +165,6 @@ const NormalizationKernels& normalizationKernels()
 }
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-
 }}  // namespace cv::iib
 
 #endif

@@ -15,9 +15,7 @@ CV_CPU_OPTIMIZATION_NAMESPACE_END
 #include "../../common/vectors.simd.hpp"
 
 namespace cv { namespace iib {
-
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
-
 namespace {
 
 static_assert(PATCH % INTS == 0 && PATCH_SAMPLES % SHORTS == 0, "vectors fit rows and patches");
@@ -274,7 +272,6 @@ const RefinementKernels& refinementKernels()
 }
 
 CV_CPU_OPTIMIZATION_NAMESPACE_END
-
 }}  // namespace cv::iib
 
 #endif
