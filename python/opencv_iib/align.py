@@ -48,27 +48,27 @@ alt="{name}, aligned" loading="lazy" width="{width}" height="{height}"></div>
 <input type="range" value="50" aria-label="border between the reference, left, and {name}">
 <figcaption>{name}: {verdict}</figcaption></figure>'''
 INTERPOLATIONS = ('NEAREST', 'LINEAR', 'CUBIC', 'LANCZOS4')  #: of cv2, by their names there
-STATE = 'align.json'  #: what a later call goes on from
-VIEWS = 'views'  #: pictures that browsers show, of those that they do not
-WARPED = tuple(map(np.dtype, ('u1', 'u2', 'i2', 'f4', 'f8')))  #: what cv2.warpPerspective takes
+STATE = 'align.json'  #: results and settings, which a later call reuses
+VIEWS = 'views'  #: folder of JPEG copies of pictures that browsers do not show
+WARPED = tuple(map(np.dtype, ('u1', 'u2', 'i2', 'f4', 'f8')))  #: types that cv2.warpPerspective takes
 LARGEST_SIDE = 32766  #: pixels that cv2.warpPerspective takes
 LONGEST_STEM = 200  #: bytes of a file's name, with room for a number and the suffix
 
 
 class Aligned(NamedTuple):
-    """What became of an image."""
+    """The result for an image."""
 
     name: str  #: path, as it was given
-    verdict: str  #: 'aligned', 'aligned through NAME', or why it cannot be read or laid onto the reference
-    matches: int = 0  #: that agree with the transform
-    errors: Sequence[float] = ()  #: standard deviations of the places of its corners in pixels, in the order of CORNERS
-    transform: Sequence[float] = ()  #: 3 x 3, row by row: from its pixels to those of the reference
-    file: str = ''  #: as the reference's camera would see it
-    size: Sequence[int] = ()  #: its width and height; none if it cannot be read
-    rotation: float = 0  #: degrees by which it is rotated against the reference, clockwise, besides EXIF's orientation; 0: less than 8
+    verdict: str  #: 'aligned', 'aligned through NAME', or why it cannot be read or aligned
+    matches: int = 0  #: number that agree with the transform
+    errors: Sequence[float] = ()  #: standard deviations of its corners in the reference, pixels, in the order of CORNERS
+    transform: Sequence[float] = ()  #: 3 x 3, row by row: from its pixels to pixels of the reference
+    file: str = ''  #: name of the aligned picture
+    size: Sequence[int] = ()  #: its width and height; empty if it cannot be read
+    rotation: float = 0  #: degrees clockwise against the reference, without EXIF's orientation; 0: less than 8
     scale: float = 1  #: of its pixels by the reference's; 1: less than a fifth more or less
     model: str = ''  #: name of the AlignmentModel of the transform
-    note: str = ''  #: a sentence about the transform, mostly ''
+    note: str = ''  #: advice about the transform, mostly ''
 
     def __str__(self) -> str:
         if not self.file:
@@ -80,7 +80,7 @@ class Aligned(NamedTuple):
 
 
 class _Options(NamedTuple):
-    """Of align, which tells what they are."""
+    """Arguments of align."""
 
     model: int
     exif: bool
@@ -92,7 +92,7 @@ class _Options(NamedTuple):
     chain: bool
 
     def check(self) -> None:
-        """:raises InvalidOption: naming what is wrong, and what there is."""
+        """:raises InvalidOption: for a value that is not known."""
         check_max_size(self.max_size)
         check_choice(self.format or 'PNG', 'format', FORMATS)
         check_choice(self.interpolation, 'interpolation', INTERPOLATIONS)
@@ -101,27 +101,27 @@ class _Options(NamedTuple):
 def align(reference: Path, images: Sequence[Path], out: Path, model: int = AlignmentModel.AUTO, exif: bool = True,
           mask: Optional[Path] = None, max_size: int = 0, format: Optional[str] = None, crop: bool = False, interpolation: str = 'LINEAR',
           chain: bool = False, workers: Optional[int] = None, log: Callable[[str], None] = note) -> list[Aligned]:
-    """Aligns images with a reference, and writes them as its camera would see them, in their own depth, channels and pages: NAME.png, .jpg or
-    .tif, ``transforms.csv``, ``align.json``, and ``index.html``, in which a slider moves the border between the reference and each.
+    """Aligns images with a reference. Writes each as the reference's camera would see it, with its own depth, channels and pages (NAME.png, .jpg
+    or .tif); ``transforms.csv``; ``align.json``; and ``index.html``, where a slider moves the border between the reference and the image.
 
-    Pixels, transforms and what is written are those of the files, not turned as EXIF may ask. An interruption keeps what is done
-    until then. Images that an earlier call with the same reference and options has aligned are not read again, if their files are the same.
+    Pixels and transforms are those of the files, not turned by EXIF. An interrupted call keeps its results. A later call with the same reference
+    and options reuses results of files that have not changed.
 
-    :param images: of a plane, or of anything by a camera that stays where it is: files, folders, and patterns such as ``*.jpg``. The
-        reference among them is left out.
+    :param images: files, folders, and patterns such as ``*.jpg``, of a plane, or of any scene by a camera that does not move. The reference
+        among them is skipped.
     :param out: folder to write; results of an earlier call are replaced.
-    :param exif: images are compared as upright as their EXIF data say.
-    :param mask: a picture, or a folder with NAME.png for an image called NAME: where it is 0, nothing is compared.
-    :param max_size: pixels of the longer side to which larger images are reduced to be compared; 0: they are not.
-    :param format: one of FORMATS; None: that of each image's file, or PNG, or TIFF where that alone holds all of it.
-    :param crop: write what all that are aligned show, instead of what the reference shows.
+    :param exif: compare the images as upright as their EXIF data say.
+    :param mask: a picture, or a folder with NAME.png for an image called NAME; pixels where it is 0 are not compared.
+    :param max_size: images are reduced to this longer side, in pixels, before they are compared; 0: they are not.
+    :param format: one of FORMATS; None: the format of each image's file, or PNG, or TIFF where only that holds all of it.
+    :param crop: write the part that all aligned images show, instead of the part that the reference shows.
     :param interpolation: one of INTERPOLATIONS.
-    :param chain: the images are a series, such as exposures or years: one that the reference has no transform with is aligned through the image
-        before or after it, and their errors add up.
-    :param workers: threads; None for one a core.
-    :param log: gets a line about files that cv2 does not read, and about pages that are left out, since they differ from the first one.
-    :return: of each image but the reference, in the order of `images`; the table and the page have 2 before 10 and b before C.
-    :raises ValueError: for a reference that is no image or too large, no image beside it, or with `crop` none that all show a part of.
+    :param chain: the images are a series, such as exposures or years. An image without a transform to the reference is aligned through the image
+        before or after it, and the errors of both steps add up.
+    :param workers: threads; None for one per core.
+    :param log: gets a line for each file that cv2 does not read, and for pages that are left out since they differ from the first one.
+    :return: results in the order of `images`; the table and the page sort 2 before 10 and b before C.
+    :raises ValueError: for a reference that is no image or too large, for no other image, or with `crop` if no part is common to all.
     :raises FileExistsError: for a folder with other files, or with an image to be aligned.
     """
     reference, out = os.fspath(reference), os.fspath(out)
@@ -148,12 +148,12 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
         part, progress = None if crop else work.whole, Progress('aligning', len(paths), len(done))
 
         def forget() -> None:
-            """What an earlier call has found, before pictures of another part or with other options take the places of its own."""
+            """Removes the state of an earlier call before its pictures are replaced by those of another part or other options."""
             if part not in (None, old_part):
                 results.remove([STATE])
 
-        def do(job: Callable[[str], Aligned], missing: list[str]) -> None:
-            done.update(in_parallel(job, missing, crew))
+        def do(job: Callable[[str], Aligned], paths: list[str]) -> None:
+            done.update(in_parallel(job, paths, crew))
 
         def align_one(path: str) -> Aligned:
             found = work.align(path, names[path], part)
@@ -175,8 +175,8 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
             for file in (name, f'{VIEWS}/{name}.jpg'):
                 if name and os.path.exists(os.path.join(results.folder, file)):
                     results.place(file)
-        missing = [path for path, each in done.items() if each.transform and each.file not in results.written]
-        done.update(in_parallel(lambda path: work.write(path, done[path], names[path], part), missing, crew))
+        do(lambda path: work.write(done[path], names[path], part),
+           [path for path, each in done.items() if each.transform and each.file not in results.written])
         ordered = [done[path] for path in paths if path in done]
         _write_tables(results, work.write_reference(part), os.path.basename(reference), ordered, part)
         state = {'settings': settings, 'part': part, 'images': [[stamps[each.name], each] for each in ordered if each.size]}
@@ -187,13 +187,13 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
 
 
 def _expanded(images: Sequence[Path], out: str, log: Callable[[str], None]) -> list[str]:
-    """Files of names, folders and patterns, each once, those of a folder or a pattern in_order. Of these, those in `out` are left out: earlier
-    calls have written them.
+    """The files of names, folders and patterns, each once; folders and patterns in_order, without files in `out`, which earlier calls have
+    written.
 
-    :raises MissingFile: for a name or a pattern that nothing has.
-    :raises TakenFile: if there are no others.
+    :raises MissingFile: for a name or a pattern without a file.
+    :raises TakenFile: if all files are in `out`.
     """
-    paths: dict[str, bool] = {}  # and whether they are left out
+    paths: dict[str, bool] = {}  # whether each is left out
     for image in sequence(images, 'images', 'paths'):
         given = os.fspath(image)
         if os.path.isdir(given):
@@ -214,7 +214,7 @@ def _expanded(images: Sequence[Path], out: str, log: Callable[[str], None]) -> l
 
 
 def _chain(work: _Work, series: Sequence[str], done: dict[str, Aligned], do: Callable[[Callable[[str], Aligned], list[str]], None]) -> None:
-    """Aligns what has no transform with the reference through its neighbours in the series, outwards from those that have one."""
+    """Aligns images without a transform through their neighbours in the series, starting beside images that have one."""
     tried: set[tuple[str, str]] = set()
     while True:
         through = {path: other for first, second in zip(series, series[1:]) for path, other in ((first, second), (second, first))
@@ -227,7 +227,7 @@ def _chain(work: _Work, series: Sequence[str], done: dict[str, Aligned], do: Cal
 
 
 def _known(out: str, settings: list[Any], stamps: dict[str, str]) -> tuple[dict[str, Aligned], Optional[list[int]]]:
-    """By path what an earlier call has found in the same files, and what it has written of them."""
+    """Results of an earlier call for the same files, by path, and the part of the reference that it wrote."""
     try:
         with open(os.path.join(out, STATE), encoding='utf-8') as file:
             state = json.load(file)
@@ -250,7 +250,7 @@ def _common(whole: list[int], images: Iterable[Aligned]) -> list[int]:
         if each.transform:
             inside = np.ones(each.size[::-1], np.uint8)
             shown &= cv2.warpPerspective(inside, np.reshape(each.transform, (3, 3)), (width, height), flags=cv2.INTER_NEAREST)
-    # What all show is convex: a rectangle is in it if its left and its right side are.
+    # The common part is convex, so a rectangle is inside if its left and right sides are.
     columns = np.flatnonzero(shown.any(axis=0))
     columns = columns[::1 + len(columns) // 2000]
     top = shown[:, columns].argmax(axis=0)
@@ -281,9 +281,9 @@ def _write_tables(results: Results, reference: str, title: str, done: Sequence[A
 
 
 def _file_names(paths: Sequence[str], known: dict[str, Aligned]) -> dict[str, str]:
-    """Of the aligned images, without suffixes, which all systems and pages can name; of those that are known, as they have them."""
+    """Names of the aligned pictures, without suffixes, that all systems and pages allow; known images keep theirs."""
     names = {path: os.path.splitext(each.file)[0] for path, each in known.items() if each.file}
-    taken = {'reference', *(name.lower() for name in names.values())}  # some systems know no difference
+    taken = {'reference', *(name.lower() for name in names.values())}  # some file systems ignore case
     for path in paths:
         if path not in names:
             stem = ''.join('_' if '\ud800' <= letter <= '\udfff' else letter for letter in os.path.splitext(os.path.basename(path))[0])
@@ -295,11 +295,11 @@ def _file_names(paths: Sequence[str], known: dict[str, Aligned]) -> dict[str, st
 
 
 class _View:
-    """An image, and how it is compared: upright, perhaps reduced, without what is masked or holds no data."""
+    """An image, and its upright, perhaps reduced copy that is compared, with a mask of pixels that hold data."""
 
     def __init__(self, path: str, options: _Options, masks: Masks, factor: int = 0) -> None:
-        """:param factor: to reduce by; 0: the least whole one for the largest size, which keeps the centres of pixels.
-        :raises ValueError: also for an image that cv2 cannot lay onto another, or others onto it."""
+        """:param factor: to reduce by; 0: the smallest whole factor for max_size.
+        :raises ValueError: also for an image that is too large for cv2.warpPerspective."""
         file = ImageFile(path, options.exif)
         self.pages, self.left_out, self.no_data, self.geo = file.pages
         if self.no_data and not all(can_be(self.no_data, page.dtype) for page in self.pages):
@@ -318,7 +318,7 @@ class _View:
         self.turn, self.factor = turn, factor or -(-max(self.size) // (options.max_size or max(self.size)))
         self.grey = self._reduced(turned)
         self.mask = None if mask is None else self._reduced(upright(mask, orientation))
-        #: from pixels of what is compared to those of the file
+        #: from pixels of the compared copy to pixels of the file
         self.matrix = turn.matrix @ [[self.factor, 0, (self.factor - 1) / 2], [0, self.factor, (self.factor - 1) / 2], [0, 0, 1]]
 
     def _reduced(self, image: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -326,18 +326,18 @@ class _View:
         return reduced(image[:height * self.factor, :width * self.factor], max(height, width)) if height * width else image
 
     def holes(self, page: NDArray[Any]) -> Optional[NDArray[np.bool_]]:
-        """Where it holds no data: H x W, or H x W x 1 or channels; None if it does everywhere."""
+        """Where a page holds no data: H x W, or H x W x 1 or channels; None if it holds data everywhere."""
         value = float(self.no_data or 'nan')
         if not self.no_data and page.dtype.kind != 'f':
             return None
         none = np.isnan(page) if np.isnan(value) else page == value
-        if page.ndim == 3 and value >= 0:  # which a channel of a colour may have, too
+        if page.ndim == 3 and value >= 0:  # a value that one channel of a colour may have, too
             none = none.all(axis=2, keepdims=True)
         return none if none.any() else None
 
 
 class _Work:
-    """What is done with each image. Threads share it."""
+    """Aligns and writes each image. Threads share it."""
 
     place: Callable[[str], str]  #: the path of a file to write, by its name
 
@@ -353,7 +353,7 @@ class _Work:
         self.whole = [0, 0, *self._reference.size]
 
     def stamp(self, path: str) -> str:
-        """Of an image's file and that of its mask."""
+        """As Masks.stamp."""
         return self._masks.stamp(path, os.path.basename(path))
 
     def _view(self, path: str, factor: int = 0) -> _View:
@@ -363,7 +363,8 @@ class _Work:
         return view
 
     def align(self, path: str, name: str, part: Optional[list[int]]) -> Aligned:
-        """:param name: of what is written, without suffix; nothing is without `part`, what of the reference is shown: x, y, width, height."""
+        """:param name: of the picture, without suffix.
+        :param part: rectangle of the reference to write: x, y, width, height; None: write nothing."""
         try:
             view = self._view(path, self._reference.factor if self._options.model == AlignmentModel.TRANSLATION else 0)
         except (ValueError, OSError) as e:
@@ -380,10 +381,10 @@ class _Work:
         errors = view.turn.corners(found.error.ravel()) * onto.factor
         model = found.simplest if self._options.model == AlignmentModel.AUTO else AlignmentModel(self._options.model)
         return Aligned(path, 'aligned', len(found.matches), errors.tolist(), transform.ravel().tolist(), '', view.size,
-                       *_rotation_and_scale(found.transform, view.grey.shape), model.name, found.note)
+                       *rotation_and_scale(np.linalg.inv(_derivative(found.transform, *np.array(view.grey.shape[::-1]) / 2))), model.name, found.note)
 
     def align_through(self, image: Aligned, other: Aligned) -> Aligned:
-        """An image that has no transform with the reference, by that of another image and theirs; where they have none, as it was."""
+        """Aligns an image by its transform to another image and that image's transform to the reference; unchanged if there is none."""
         onto = self._view(other.name)
         view = self._view(image.name, onto.factor if self._options.model == AlignmentModel.TRANSLATION else 0)
         found = self._aligned(ImageAligner(onto.grey, self._options.model, onto.mask), onto, view, image.name)
@@ -392,15 +393,16 @@ class _Work:
         to_other, to_reference = (np.reshape(each.transform, (3, 3)) for each in (found, other))
         transform = to_reference @ to_other
         transform /= transform[2, 2]
-        width, height = view.size
-        errors = [float(np.hypot(error * _stretch(to_reference, to_other @ np.array([x, y, 1.])), max(other.errors)))
-                  for error, (x, y) in zip(found.errors, ((0, 0), (width - 1, 0), (width - 1, height - 1), (0, height - 1)))]
+        right, bottom = view.size[0] - 1, view.size[1] - 1
+        corners = np.array([[0, 0, 1], [right, 0, 1], [right, bottom, 1], [0, bottom, 1]]) @ to_other.T
+        errors = [float(np.hypot(error * np.linalg.norm(_derivative(to_reference, x / w, y / w), 2), max(other.errors)))
+                  for error, (x, y, w) in zip(found.errors, corners)]
         return found._replace(verdict=f'aligned through {os.path.basename(other.name)}', errors=errors, transform=transform.ravel().tolist(),
                               scale=found.scale * other.scale, rotation=(found.rotation + other.rotation) % 360)
 
-    def write(self, path: str, aligned: Aligned, name: str, part: list[int]) -> Aligned:
-        """The same for one whose transform is known."""
-        return self._written(_View(path, self._options, Masks(None)), aligned, name, part)
+    def write(self, aligned: Aligned, name: str, part: list[int]) -> Aligned:
+        """Writes an image whose transform is known."""
+        return self._written(_View(aligned.name, self._options, Masks(None)), aligned, name, part)
 
     def write_reference(self, part: list[int]) -> str:
         """:return: the name of its file."""
@@ -411,7 +413,7 @@ class _Work:
         onto = np.array([[1, 0, -part[0]], [0, 1, -part[1]], [0, 0, 1]]) @ np.reshape(aligned.transform, (3, 3))
         try:
             file = self._write(view, [self._warped(view, page, onto, part[2:]) for page in view.pages], name, part)
-        except ValueError as e:  # of a format that cannot hold it
+        except ValueError as e:  # the format cannot hold it
             return aligned._replace(verdict=str(e), transform=())
         return aligned._replace(file=file)
 
@@ -420,15 +422,15 @@ class _Work:
         suffix = FORMATS[self._options.format] if self._options.format else view.suffix if whole else '.tif'
         file = name + suffix
         write_picture(self.place(file), *pages, no_data=view.no_data, geo=geo_of_part(self._reference.geo, part[0], part[1]))
-        if suffix == '.tif' or pages[0].dtype != np.uint8:  # which browsers do not show, or too dark
+        if suffix == '.tif' or pages[0].dtype != np.uint8:  # browsers do not show it, or too dark
             holes = None if pages[0].dtype == np.uint8 else view.holes(pages[0])
-            shown = pages[0] if holes is None else np.where(holes, np.nan, pages[0])  # which has no part in the scale
+            shown = pages[0] if holes is None else np.where(holes, np.nan, pages[0])  # which the scale leaves out
             shown = shown if np.isfinite(shown).any() else np.zeros_like(shown, np.uint8)
             write_picture(self.place(f'{VIEWS}/{file}.jpg'), in_8_bits(shown, True))
         return file
 
     def _warped(self, view: _View, page: NDArray[Any], onto: NDArray[Any], size: Sequence[int]) -> NDArray[Any]:
-        """Of the same numbers. Beside the image, and where pixels without data have a part in one, it is without data, else 0."""
+        """A page in pixels of the part. Pixels beside the image, and those interpolated from pixels without data, get no_data, or 0."""
         cv2 = import_cv2()
 
         def warp(values: NDArray[Any]) -> NDArray[Any]:
@@ -448,18 +450,11 @@ class _Work:
         return warped
 
 
-def _rotation_and_scale(transform: NDArray[np.float64], shape: Sequence[int]) -> tuple[float, float]:
-    """Of an image against the reference, at its middle."""
-    middle, right, below = (transform @ (shape[1] / 2 + x, shape[0] / 2 + y, 1) for x, y in ((0, 0), (1, 0), (0, 1)))
-    columns = [(each[:2] / each[2] - middle[:2] / middle[2]) for each in (right, below)]
-    return rotation_and_scale(np.linalg.inv(np.column_stack(columns)))
-
-
-def _stretch(transform: NDArray[np.float64], point: NDArray[np.float64]) -> float:
-    """By how much a transform enlarges a small distance at a point."""
-    x, y, w = transform @ point / point[2]
-    derivative = (transform[:2, :2] - np.outer((x, y), transform[2, :2]) / w) / w
-    return float(np.linalg.norm(derivative, 2))
+def _derivative(transform: NDArray[np.float64], x: float, y: float) -> NDArray[np.float64]:
+    """Of a homography at a point, 2 x 2."""
+    place = transform @ (x, y, 1)
+    derivative: NDArray[np.float64] = (transform[:2, :2] - np.outer(place[:2], transform[2, :2]) / place[2]) / place[2]
+    return derivative
 
 
 def _row(each: Aligned) -> list[str]:

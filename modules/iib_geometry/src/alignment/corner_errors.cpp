@@ -9,7 +9,7 @@ namespace {
 const double ANY = 1e3;  // largest deviation of a transform's parameter
 /* Pixels by which all matches may be off where one image is moved by half a pixel, since patches that were resampled are smoother
 (Schreier, Braasch and Sutton 2000). */
-const double RESAMPLED = .05;
+const double RESAMPLED = .085;
 const double NEIGHBOURS = .03;  // correlation of a part's matches, since patches of neighbours overlap
 const double WIDER = 4;  // variance of the error that all matches share, over that of the matches of one part
 

@@ -124,10 +124,15 @@ SharedPart WorkingPair::sharedPart(int which, const AlignedPoints& points, const
     SharedPart part;
     const Size size = images_[which]->size();
     const double width = (double)size.width / SAMPLES_ACROSS, height = (double)size.height / SAMPLES_ACROSS;
+    double shown = 0;
     for (int row = 0; row < SAMPLES_ACROSS; row++)
         for (int column = 0; column < SAMPLES_ACROSS; column++)
-            part.area += both({(column + .5) * width - .5, (row + .5) * height - .5}) ? width * height : 0;
-    part.share = part.area / size.area();
+        {
+            const Point2d sample((column + .5) * width - .5, (row + .5) * height - .5);
+            shown += images_[which]->shows(sample) ? width * height : 0;
+            part.area += both(sample) ? width * height : 0;
+        }
+    part.share = part.area / std::max(shown, 1.);
     for (const KeyPoint& keypoint : points.keypoints[which])
     {
         const Point2d point = moved(toImage, keypoint.pt);

@@ -127,11 +127,13 @@ double ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
 
 Spread::Spread(const SharedPart& reference, const SharedPart& image, int sampleSize)
 {
+    const double share = std::max({reference.share, image.share, 1e-3});
     for (const SharedPart* part : {&reference, &image})
     {
-        connected = std::min(connected, largestGroup(part->agreeing, sideOf(part->area)));
+        const double shown = std::max(part->area / share, 1.);
+        connected = std::min(connected, largestGroup(part->agreeing, sideOf(shown)));
         area = std::max(area, ratio(areaOf(part->agreeing), areaOf(part->points)));
-        whole = std::min(whole, areaWithout(sampleSize, part->agreeing) / std::max(part->area, 1.));
+        whole = std::min(whole, areaWithout(sampleSize, part->agreeing) / shown);
         scatter = std::max(scatter, scatterOf(part->agreeing, part->points));
     }
 }

@@ -13,7 +13,7 @@ namespace cv::iib {
 struct SharedPart
 {
     double area = 0;                //!< pixels that both images show and masks allow
-    double share = 0;               //!< of the image's pixels
+    double share = 0;               //!< of the pixels that the image's own mask allows
     std::vector<Point2f> points;    //!< keypoints there
     std::vector<Point2f> agreeing;  //!< matches that agree with a transform
     std::vector<double> values;     //!< of the pixels at these matches
@@ -23,11 +23,12 @@ struct SharedPart
 says less, so the order of the images does not matter. */
 struct Spread
 {
-    //! The largest connected group of cells with matches, of CELLS cells of the shared area. Captions are small groups.
+    /** The largest connected group of cells with matches. CELLS cells are as large as what the image with the larger share shows: a caption, which is
+    a small group, stays one where pictures overlap little. */
     int connected = CELLS;
     double area = 0;  //!< of the matches' hull, over that of the keypoints' hull
-    /** The matches' hull over the shared area, without the few matches that enlarge it most: a transform bends towards as many wrong matches
-    as determine it. */
+    /** The matches' hull over the area of as many cells, without the few matches that enlarge it most: a transform bends towards as many wrong
+    matches as determine it. */
     double whole = 1;
     double scatter = 0;  //!< number of cells with matches, over the number that as many keypoints would be in
 
