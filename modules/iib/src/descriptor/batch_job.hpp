@@ -20,7 +20,7 @@ struct Workspace
     CellGrid<ushort> shortSums;                                            //!< over the finest cells
     CellGrid<unsigned> sums[MAX_GRANULARITY + 1];                          //!< over the cells of each level
     CellGrid<double> doubleSums[MAX_GRANULARITY + 1];
-    CellGrid<unsigned> samples;  //!< sums of rotated regions, one cell for each sample
+    CellGrid<unsigned> samples;  //!< sums of rotated regions, over the cells of their grids
     CellGrid<ushort>& sumsOf(ushort, int) { return shortSums; }
     CellGrid<unsigned>& sumsOf(unsigned, int level) { return sums[level]; }
     CellGrid<double>& sumsOf(double, int level) { return doubleSums[level]; }

@@ -96,7 +96,7 @@ int MatchRefiner::rotationOf(const std::vector<DMatch>& matches) const
     std::vector<const DMatch*> voting;
     for (const DMatch& match : matches)
         if (!hasAngle(first[match.queryIdx]) && !hasAngle(second[match.trainIdx]) &&
-                seesFirst(match.queryIdx) && seesSecond(match.trainIdx))
+                containsFirst(match.queryIdx) && containsSecond(match.trainIdx))
             voting.push_back(&match);
     RotationVotes votes;
     const size_t n = std::min(voting.size(), VOTING_MATCHES);
@@ -167,7 +167,7 @@ void MatchRefiner::refine(std::vector<Refinement>& matches) const
                     const int query = r.match.queryIdx;
                     const Start start = begin(r);
                     r.found = {false, start.places.begin()->centre, -1, Matx22d::eye(), Matx22d::eye()};
-                    if (!seesFirst(query) || !seesSecond(r.match.trainIdx))
+                    if (!containsFirst(query) || !containsSecond(r.match.trainIdx))
                         continue;
                     if (query != last || start.unit != unit)
                         aligner.setTemplate(

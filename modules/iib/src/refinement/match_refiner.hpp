@@ -40,9 +40,9 @@ public:
 
     Size firstSize() const { return images[0].pixels.size(); }
     Size secondSize() const { return images[1].pixels.size(); }
-    //! Whether a keypoint lies inside its image.
-    bool seesFirst(size_t index) const { return isInside(first[index], images[0].pixels); }
-    bool seesSecond(size_t index) const { return isInside(second[index], images[1].pixels); }
+    //! Whether an image contains its keypoint.
+    bool containsFirst(size_t index) const { return isInside(first[index], images[0].pixels); }
+    bool containsSecond(size_t index) const { return isInside(second[index], images[1].pixels); }
 
 private:
     struct Start;

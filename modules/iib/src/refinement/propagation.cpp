@@ -204,7 +204,7 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
         // trusted seeds of this round
         const NearPoints ofTrusted(refiner.firstSize(), seedPlaces, trusted, MOST_MATCHES);
         const NearPoints ofSecond(refiner.secondSize(), places2,
-                unmarked(places2.size(), [&](size_t t) { return matched2[t] || !refiner.seesSecond(t); }),
+                unmarked(places2.size(), [&](size_t t) { return matched2[t] || !refiner.containsSecond(t); }),
                 MOST_KEYPOINTS);
 
         const int parts = ((int)keypoints1.size() + PART - 1) / PART;
@@ -212,7 +212,7 @@ void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoin
         const auto listTries = [&](int part) {
             for (int q = part * PART; q < std::min((part + 1) * PART, (int)keypoints1.size()); q++)
             {
-                if (matched1[q] || triesOf[q] == MOST_TRIES || !refiner.seesFirst(q))
+                if (matched1[q] || triesOf[q] == MOST_TRIES || !refiner.containsFirst(q))
                     continue;
                 const Nearest trust = ofTrusted.find(places1[q], REACH, 1);
                 if (trust.begin() == trust.end())
