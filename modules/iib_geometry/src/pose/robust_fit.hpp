@@ -344,12 +344,12 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
         Search<Problem> search(problem, Loss{narrow}, Loss{2 * narrow}, fewest, missed);
         choose(search, narrow, fewTrials);
         found = findScale(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), estimated);
-        if (found && search.wantsMore())
+        if ((found || narrow == 2 * refined) && search.wantsMore())
             choose(search, narrow, mostTrials);
     }
     if (!found)
         narrow = 2 * refined;
-    if (fit.squared.empty() || !found)
+    if (fit.squared.empty() || (!found && mostScale < narrow))
     {
         Search<Problem> search(problem, Loss{narrow}, Loss{2 * narrow}, fewest, missed);
         choose(search, narrow, mostTrials);
