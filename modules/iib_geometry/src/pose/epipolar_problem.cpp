@@ -165,10 +165,10 @@ double EpipolarProblem::loss(const RelativePose& pose, const Loss& by, double li
 }
 
 double EpipolarProblem::squaredError(
-        const RelativePose& pose, const Matx33d& essential, int first, int second) const
+        const RelativePose& pose, const Matx33d& essential, int first, int second, double farthest) const
 {
     const double squared = squaredErrorOf(essential, weights_, first_[first], second_[second]);
-    return inFront(pose, first_[first], second_[second])
+    return squared > square(farthest) || inFront(pose, first_[first], second_[second])
                    ? squared
                    : std::max(squared, square(parallax(pose, first, second)));
 }
@@ -178,7 +178,7 @@ void EpipolarProblem::squaredErrors(const RelativePose& pose, std::vector<double
     const Matx33d essential = essentialOf(pose);
     errors.resize(size());
     for (int i = 0; i < size(); i++)
-        errors[i] = squaredError(pose, essential, i, i);
+        errors[i] = squaredError(pose, essential, i, i, std::numeric_limits<double>::max());
 }
 
 double EpipolarProblem::parallax(const RelativePose& pose, int first, int second) const
