@@ -390,7 +390,7 @@ std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
     std::vector<Square<Step>> all;
     for (const Row<Step>& r : rows)
     {
-        Square<Step> noise = Square<Step>::zeros(), whole = noise;
+        Square<Step> noise = Square<Step>::zeros();
         for (int coordinate = 0; coordinate < 4; coordinate++)
         {
             Point2d first = first_[r.match], second = second_[r.match];
@@ -398,14 +398,19 @@ std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
             *moved[coordinate] += little * pixels_[coordinate];
             addProduct(row(linear, first, second).J - r.J, noise2 / square(little) * more, noise);
         }
-        addProduct(r.J, 1, whole);
+        const double left =
+                1 - most * (noise(3, 3) + noise(4, 4)) / (square(r.J[3]) + square(r.J[4]) + NOWHERE);
+        // By how many of two steps are directions: what is left of the row, and of its noise, half of which the share takes out.
+        const double shares[] = {1, std::sqrt(std::max(left, 0.)), std::max(left, 0.)}, kept[] = {1, .5, .25};
+        for (int a = 0; a < Step::channels; a++)
+            for (int b = 0; b <= a; b++)
+            {
+                const int directions = (a > 2) + (b > 2);
+                const double whole = r.J[a] * r.J[b];
+                noise(a, b) = whole - shares[directions] * (whole - kept[directions] * noise(a, b));
+            }
         mirror(noise);
-        mirror(whole);
-        const double left = 1 - most * (noise(3, 3) + noise(4, 4)) / (whole(3, 3) + whole(4, 4) + NOWHERE),
-                     share = std::sqrt(std::max(left, 0.));
-        const Square<Step> shares = Square<Step>::diag({1, 1, 1, share, share});
-        const Square<Step> half = Square<Step>::diag({1, 1, 1, .5, .5});  // the shares leave out the rest
-        all.push_back(whole - shares * (whole - half * noise * half) * shares);
+        all.push_back(noise);
     }
     return all;
 }
