@@ -15,6 +15,7 @@ namespace {
 const int STRIDE = 32;          // matches between two looks at the limit
 const double MOST_SCALE = .01;  // of what the points span: wider, few wrong poses can be told from right ones
 const double NOWHERE = 1e-300;  // keeps an error of 0 / 0, at the epipoles, finite
+const int STEPS = 6;            // of a pose: five, and one more for an even number
 
 std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
 {
@@ -207,59 +208,60 @@ std::vector<double> EpipolarProblem::leastParallaxes(
     return parallaxes;
 }
 
+//! A pose and its derivatives.
 struct EpipolarProblem::Linear
 {
-    Matx33d R, E;
-    Vec3d t, turnedBack, tangents[2];  //!< R't
+    Matx33d E;
+    double byStep[9][STEPS] = {};  //!< of E's entries: of [t]x [e]x R, and of [b]x R
 
-    explicit Linear(const RelativePose& pose)
-        : R(pose.R), E(essentialOf(pose)), t(pose.t), turnedBack(pose.R.t() * pose.t)
+    explicit Linear(const RelativePose& pose) : E(essentialOf(pose))
     {
-        const Matx<double, 3, 2> both = tangentsOf(t);
-        for (int k = 0; k < 2; k++)
-            tangents[k] = Vec3d(both(0, k), both(1, k), both(2, k));
+        const Matx33d cross = crossProduct(pose.t);
+        const Matx<double, 3, 2> tangents = tangentsOf(pose.t);
+        for (int k = 0; k < 5; k++)
+        {
+            Vec3d axis;
+            if (k < 3)
+                axis[k] = 1;
+            else
+                axis = Vec3d(tangents(0, k - 3), tangents(1, k - 3), tangents(2, k - 3));
+            const Matx33d changes = k < 3 ? cross * crossProduct(axis) * pose.R : crossProduct(axis) * pose.R;
+            for (int e = 0; e < 9; e++)
+                byStep[e][k] = changes.val[e];
+        }
     }
 };
 
-// Of r = v'E u / length, E changes by [t]x [w]x R and [b]x R. With p = (v - r W line / length) / length and
-// q = -r W back / length^2, dr = p'dE u + v'dE q, and triple products give w and b their vectors.
 Row<EpipolarProblem::Step> EpipolarProblem::row(
         const Linear& linear, const Point2d& first, const Point2d& second) const
 {
-    const Vec3d u(first.x, first.y, 1), v(second.x, second.y, 1);
-    const Matx33d &E = linear.E, &R = linear.R;
+    const double u[] = {first.x, first.y, 1}, v[] = {second.x, second.y, 1};
+    const Matx33d& E = linear.E;
     double line[3], back[2];
     for (int k = 0; k < 3; k++)
         line[k] = E(k, 0) * u[0] + E(k, 1) * u[1] + E(k, 2);
     for (int k = 0; k < 2; k++)
         back[k] = E(0, k) * v[0] + E(1, k) * v[1] + E(2, k);
-    const double weightedLine[] = {weights_[0] * line[0], weights_[1] * line[1]},
-                 weightedBack[] = {weights_[2] * back[0], weights_[3] * back[1]};
+    const double weightedLine[] = {weights_[0] * line[0], weights_[1] * line[1], 0},
+                 weightedBack[] = {weights_[2] * back[0], weights_[3] * back[1], 0};
     const double length2 = weightedLine[0] * line[0] + weightedLine[1] * line[1] + weightedBack[0] * back[0] +
                            weightedBack[1] * back[1] + NOWHERE;
     const double inverse = 1 / std::sqrt(length2), r = (v[0] * line[0] + v[1] * line[1] + line[2]) * inverse;
+    // dr = (v' dE u) / length - r (line' W dE u + back' W dE' v) / length^2: both are sums over dE's entries
     const double pull = r * inverse;
-    const Vec3d p(
-            (v[0] - pull * weightedLine[0]) * inverse, (v[1] - pull * weightedLine[1]) * inverse, inverse);
-    const double q[] = {-pull * weightedBack[0] * inverse, -pull * weightedBack[1] * inverse};
-    Vec3d Ru, Rq;
-    for (int k = 0; k < 3; k++)
-    {
-        Ru[k] = R(k, 0) * u[0] + R(k, 1) * u[1] + R(k, 2);
-        Rq[k] = R(k, 0) * q[0] + R(k, 1) * q[1];
-    }
-    const double alongU = linear.turnedBack.dot(u),
-                 alongQ = linear.turnedBack[0] * q[0] + linear.turnedBack[1] * q[1],
-                 both = Ru.dot(p) + Rq.dot(v);
-    Vec3d byTurn;  // Ru x (p x t) + Rq x (v x t)
-    for (int k = 0; k < 3; k++)
-        byTurn[k] = alongU * p[k] + alongQ * v[k] - both * linear.t[k];
-    const Vec3d byMove = Ru.cross(p) + Rq.cross(v);
+    double J[STEPS] = {};
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+        {
+            const double byE =
+                    (v[a] * u[b] - pull * (weightedLine[a] * u[b] + weightedBack[b] * v[a])) * inverse;
+            for (int k = 0; k < STEPS; k++)  // steps side by side, so that compilers make vectors of them
+                J[k] += byE * linear.byStep[3 * a + b][k];
+        }
     Row<Step> row;
     row.r = r;
     row.r2 = r * r;
-    row.J = Step(
-            byTurn[0], byTurn[1], byTurn[2], byMove.dot(linear.tangents[0]), byMove.dot(linear.tangents[1]));
+    std::copy(J, J + 5, row.J.val);
     return row;
 }
 
