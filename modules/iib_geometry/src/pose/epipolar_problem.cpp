@@ -166,10 +166,10 @@ double EpipolarProblem::loss(const RelativePose& pose, const Loss& by, double li
 }
 
 double EpipolarProblem::squaredError(
-        const RelativePose& pose, const Matx33d& essential, int first, int second) const
+        const RelativePose& pose, const Matx33d& essential, int first, int second, double farthest) const
 {
     const double squared = squaredErrorOf(essential, weights_, first_[first], second_[second]);
-    return inFront(pose, first_[first], second_[second])
+    return squared > square(farthest) || inFront(pose, first_[first], second_[second])
                    ? squared
                    : std::max(squared, square(parallax(pose, first, second)));
 }
@@ -179,7 +179,7 @@ void EpipolarProblem::squaredErrors(const RelativePose& pose, std::vector<double
     const Matx33d essential = essentialOf(pose);
     errors.resize(size());
     for (int i = 0; i < size(); i++)
-        errors[i] = squaredError(pose, essential, i, i);
+        errors[i] = squaredError(pose, essential, i, i, std::numeric_limits<double>::max());
 }
 
 double EpipolarProblem::parallax(const RelativePose& pose, int first, int second) const
@@ -392,7 +392,7 @@ std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
     std::vector<Square<Step>> all;
     for (const Row<Step>& r : rows)
     {
-        Square<Step> noise = Square<Step>::zeros(), whole = noise;
+        Square<Step> noise = Square<Step>::zeros();
         for (int coordinate = 0; coordinate < 4; coordinate++)
         {
             Point2d first = first_[r.match], second = second_[r.match];
@@ -400,14 +400,19 @@ std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
             *moved[coordinate] += little * pixels_[coordinate];
             addProduct(row(linear, first, second).J - r.J, noise2 / square(little) * more, noise);
         }
-        addProduct(r.J, 1, whole);
+        const double left =
+                1 - most * (noise(3, 3) + noise(4, 4)) / (square(r.J[3]) + square(r.J[4]) + NOWHERE);
+        // By how many of two steps are directions: what is left of the row, and of its noise, half of which the share takes out.
+        const double shares[] = {1, std::sqrt(std::max(left, 0.)), std::max(left, 0.)}, kept[] = {1, .5, .25};
+        for (int a = 0; a < Step::channels; a++)
+            for (int b = 0; b <= a; b++)
+            {
+                const int directions = (a > 2) + (b > 2);
+                const double whole = r.J[a] * r.J[b];
+                noise(a, b) = whole - shares[directions] * (whole - kept[directions] * noise(a, b));
+            }
         mirror(noise);
-        mirror(whole);
-        const double left = 1 - most * (noise(3, 3) + noise(4, 4)) / (whole(3, 3) + whole(4, 4) + NOWHERE),
-                     share = std::sqrt(std::max(left, 0.));
-        const Square<Step> shares = Square<Step>::diag({1, 1, 1, share, share});
-        const Square<Step> half = Square<Step>::diag({1, 1, 1, .5, .5});  // the shares leave out the rest
-        all.push_back(whole - shares * (whole - half * noise * half) * shares);
+        all.push_back(noise);
     }
     return all;
 }

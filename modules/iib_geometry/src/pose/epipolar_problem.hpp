@@ -37,8 +37,11 @@ public:
 
     //! Of a match behind a camera, as of a point at infinity, the nearest that may be.
     void squaredErrors(const RelativePose& pose, std::vector<double>& errors) const;
-    //! The same of the first point of a match and the second point of another. @param essential that of the pose.
-    double squaredError(const RelativePose& pose, const Matx33d& essential, int first, int second) const;
+    /** The same of the first point of a match and the second point of another.
+    @param essential that of the pose.
+    @param farthest distance, pixels, from where on it does not count whether the match is behind a camera. */
+    double squaredError(
+            const RelativePose& pose, const Matx33d& essential, int first, int second, double farthest) const;
     //! How far a match is from where a point at infinity would be seen, pixels: as Sampson's error, a part of it in either image.
     double parallax(const RelativePose& pose, int first, int second) const;
 

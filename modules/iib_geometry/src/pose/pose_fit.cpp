@@ -109,8 +109,8 @@ PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double uni
     for (double scales : {1.5, 3., 6., 12.})
         limits.push_back(std::min(scales * unit, farthest));
     const Matx33d essential = essentialOf(fit.model);
-    const Errors wrong = errorsOfWrongMatches(
-            verdict, [&](int i, int j) { return problem.squaredError(fit.model, essential, i, j); });
+    const Errors wrong = errorsOfWrongMatches(verdict,
+            [&](int i, int j) { return problem.squaredError(fit.model, essential, i, j, limits.back()); });
     fit.logFalseAlarms = verdict.logFalseAlarms(
             fit.squared, wrong, Verdict::FROM_LINE, problem.sampleSize(), limits, &fit.limit);
     fit.chance = verdict.chance(Verdict::FROM_LINE, fit.limit, wrong);
