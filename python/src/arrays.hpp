@@ -71,8 +71,7 @@ typedef nb::call_guard<nb::gil_scoped_release> WithoutGil;
 
 }  // namespace iib_python
 
-namespace nanobind {
-namespace detail {
+namespace nanobind { namespace detail {
 
 //! Converts by read() and matrixOf(); the array lives as long as the call.
 template <typename T> struct array_caster
@@ -113,5 +112,4 @@ template <> struct type_caster<std::vector<cv::Point3d>> : array_caster<std::vec
 {
 };
 
-}  // namespace detail
-}  // namespace nanobind
+}}  // namespace nanobind::detail

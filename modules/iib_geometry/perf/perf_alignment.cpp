@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "perf_precomp.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 typedef perf::TestBaseWithParam<int> IIB_Align;  // megapixels
 
@@ -22,5 +21,4 @@ PERF_TEST_P(IIB_Align, noon_and_winter, testing::Values(2, 12, 50))
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -7,8 +7,7 @@
 #include "opencv2/core/quaternion.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! Strecha's entry-P10 below OPENCV_TEST_DATA_PATH: ten photographs of 768 x 512 pixels, with poses.
 std::string entry(const std::string& name)
@@ -63,5 +62,4 @@ PERF_TEST_P(IIB_Localize, relit_among_ten, testing::Values(1000, 2000))
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "perf_precomp.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const Matx33d CAMERA(518.4, 0, 319.5, 0, 518.4, 239.5, 0, 0, 1);
 
@@ -61,5 +60,4 @@ PERF_TEST_P(IIB_PairPose, findRelativePose, testing::Values(1000, 2000, 4000))
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

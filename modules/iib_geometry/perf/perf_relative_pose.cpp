@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "perf_precomp.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 const Matx33d CAMERA(500, 0, 320, 0, 500, 240, 0, 0, 1);
 
@@ -48,5 +47,4 @@ PERF_TEST(RelativePose, findEssentialMat_MAGSAC)
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

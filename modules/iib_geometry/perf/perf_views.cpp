@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "perf_precomp.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! The demo's street at noon and at night: from the side, reduced to a quarter and rotated, and another place.
 struct Images
@@ -70,5 +69,4 @@ PERF_TEST_P(IIB_Views, SIFT, testing::Values("searched", "unrelated"))
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

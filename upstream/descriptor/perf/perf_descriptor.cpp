@@ -4,8 +4,7 @@
 
 #include "perf_precomp.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! Corners everywhere: blurred noise at two scales.
 Mat cornerImage(Size size)
@@ -75,5 +74,4 @@ PERF_TEST_P(IIB_Describe, hd,
     SANITY_CHECK_NOTHING();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -5,8 +5,7 @@
 #include "descriptor_oracle.hpp"
 #include "support/textures.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 
 //! Computes descriptors and expects that the keypoints stay as they are.
 Mat describe(IIB& iib, InputArray image, const std::vector<KeyPoint>& keypoints)
@@ -266,5 +265,4 @@ TEST(IIB_Descriptor, any_number_of_threads)
     EXPECT_EQ(0, differingBits(one, four));
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

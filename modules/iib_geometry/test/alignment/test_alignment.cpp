@@ -5,8 +5,7 @@
 #include "pose/planar_problem.hpp"
 #include "pose/uncertainty.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 TEST(Alignment, finds_each_kind_of_transform_in_another_light)
@@ -318,5 +317,4 @@ TEST(Alignment, derivatives_are_those_of_finite_differences)
         expectDerivatives(PlanarProblem(reference, image, kind), model, 5, 1e-3);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -4,8 +4,7 @@
 #include "opencv2/core/affine.hpp"
 
 // Which alignments are refused, and what is told of those that are found.
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 TEST(Alignment, refuses_images_of_other_scenes_and_without_points)
@@ -386,5 +385,4 @@ TEST(Alignment, refuses_hot_pixels)
     EXPECT_NE(reason.find("hot pixels"), String::npos) << reason;
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -3,8 +3,7 @@
 #include "locate/image_voting.hpp"
 #include "opencv2/ts.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 //! The codes with each bit flipped with a probability.
@@ -80,5 +79,4 @@ TEST(ImageVoting, without_codes_there_are_no_votes)
     EXPECT_EQ(std::vector<float>(2), ImageVoting({some, some}).vote(none).ofImages);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

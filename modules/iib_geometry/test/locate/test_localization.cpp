@@ -3,8 +3,7 @@
 #include "opencv2/iib/refinement.hpp"
 #include "../wall.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 struct Localization : public WallTest
@@ -294,5 +293,4 @@ TEST_F(Localization, codes_of_another_descriptor_are_refused)
             messageOf([&] { Localizer(folder.path("map")); }));
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

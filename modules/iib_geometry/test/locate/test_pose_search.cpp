@@ -4,8 +4,7 @@
 #include "pose/camera_pose.hpp"
 #include "../test_precomp.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 const Camera VGA = {"PINHOLE", {640, 480}, {500, 500, 320, 240}};
@@ -155,5 +154,4 @@ TEST(ClusteredCovariance, fails_for_a_degenerate_pose)
     EXPECT_FALSE(clusteredCovariance(problem.matches, Lens(VGA), HERE, covariance));
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

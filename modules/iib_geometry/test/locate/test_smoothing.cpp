@@ -7,8 +7,7 @@
 #include "locate/imu_motion.hpp"
 #include "../test_folder.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 const cv::Vec3d GRAVITY(0, 9.81 * 0.8, 9.81 * 0.6);  // along no axis of the world
@@ -413,5 +412,4 @@ TEST(Smoothing, refuses_unordered_times)
     EXPECT_EQ("there are 4 times of 5 images", error());
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

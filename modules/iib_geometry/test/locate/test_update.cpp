@@ -4,8 +4,7 @@
 
 #include "../wall.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 class Update : public WallTest
@@ -161,5 +160,4 @@ TEST_F(Update, one_at_a_time)
     EXPECT_EQ(1u, readMap(name).updates);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -16,8 +16,7 @@ Segments findSegments(const Picture&);
 #include "../../src/map/segments.cpp"
 }  // namespace without_line_descriptor
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 std::string missing()
@@ -236,5 +235,4 @@ TEST_F(LinesOfMaps, are_on_the_wall_and_refine_poses)
     EXPECT_EQ(lined.lines.size(), readMap(made).lines.size());
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

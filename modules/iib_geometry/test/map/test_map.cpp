@@ -9,8 +9,7 @@
 #include "../wall.hpp"
 #include "opencv2/iib/detail/checked_file.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 Map smallMap()
@@ -358,5 +357,4 @@ TEST_F(SmallMap, a_reader_gets_one_of_two_maps_that_replace_each_other)
     writer.join();
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

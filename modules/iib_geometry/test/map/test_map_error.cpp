@@ -5,8 +5,7 @@
 #include "map/triangulation.hpp"
 #include "../test_precomp.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 const Camera VGA = {"PINHOLE", {640, 480}, {500, 500, 320, 240}};
@@ -111,5 +110,4 @@ TEST(MapError, of_an_exact_map_is_zero)
     EXPECT_EQ(Matx66d::zeros(), mapError(WrongMap(random, 2, .01).map)) << "two images determine no error";
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

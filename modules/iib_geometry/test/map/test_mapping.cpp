@@ -11,8 +11,7 @@
 #include <sys/stat.h>
 #endif
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 constexpr uint32_t EQUIRECTANGULAR = 17;  // number of the camera model in COLMAP
@@ -416,5 +415,4 @@ TEST_F(Mapping, a_model_is_read_as_it_was_written)
     EXPECT_LT(cv::norm(image.cameraFromWorld.matrix, again[0].cameraFromWorld.matrix), 1e-12);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -5,8 +5,7 @@
 #include "pose/lens.hpp"
 #include "../wall.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 //! Pixels of two points in cameras of 640 x 480 pixels by pycolmap 4.2.1, Camera.img_from_cam, minus half a pixel.
@@ -255,5 +254,4 @@ TEST(Pose, refined_to_the_truth_among_wrong_matches)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

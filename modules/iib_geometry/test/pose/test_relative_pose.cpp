@@ -8,8 +8,7 @@
 #include "pose/real_roots.hpp"
 #include "two_cameras.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 TEST(RelativePose, real_roots_are_found_inside_and_outside_of_the_unit_interval)
@@ -347,5 +346,4 @@ TEST(RelativePose, mistakes_are_told)
         EXPECT_THROW(findRelativePose(points, points, camera, camera, R, t, noArray(), scale), cv::Exception);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

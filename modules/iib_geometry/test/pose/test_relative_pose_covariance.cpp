@@ -3,8 +3,7 @@
 #include "pose/robust_fit.hpp"
 #include "two_cameras.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 const double MEDIAN = 4.351, OF_95 = 11.07, OF_99 = 15.09;  // of chi-squared with five degrees of freedom
@@ -125,5 +124,4 @@ TEST(RelativePose, covariance_is_that_of_residuals_of_any_size)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

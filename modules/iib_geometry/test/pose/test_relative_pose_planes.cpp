@@ -3,8 +3,7 @@
 #include "two_cameras.hpp"
 
 // What matches do not tell: of planes, of lines, and of cameras that hardly moved.
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 //! Which tells no rotation about the line.
@@ -191,5 +190,4 @@ TEST(RelativePose, of_points_about_a_plane_is_found)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -4,8 +4,7 @@
 #include "verdict/pose_verdict.hpp"
 
 // Which poses are accepted, and how far off they are said to be.
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 struct Found
@@ -207,5 +206,4 @@ TEST(RelativePose, takes_covariances_of_matches)
             cv::Exception);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -4,8 +4,7 @@
 #include "verdict/verdict.hpp"
 #include "../pose/two_cameras.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 TEST(Verdict, false_alarms_are_few_of_right_matches_and_many_of_wrong_ones)
@@ -235,5 +234,4 @@ TEST(Verdict, confidence_limits_are_those_of_students_t)
     EXPECT_THROW(confidenceLimit(.5, 0), cv::Exception);
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -5,8 +5,7 @@
 #include "opencv2/iib_geometry.hpp"
 #include "views/view.hpp"
 
-namespace opencv_test {
-namespace {
+namespace opencv_test { namespace {
 using namespace cv::iib;
 
 Matx33d turned(double degrees)
@@ -269,5 +268,4 @@ TEST(Views, pixels_are_where_their_map_projects_them)
     }
 }
 
-}  // namespace
-}  // namespace opencv_test
+}}  // namespace opencv_test

@@ -20,8 +20,7 @@
 #include "kernels/orientation.hpp"
 #include "quad_numbers.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 namespace {
 
@@ -567,5 +566,4 @@ Ptr<IIBDescriptorExtractor> IIBDescriptorExtractor::create(
     return makePtr<IIBDescriptorExtractor_Impl>(parameters);
 }
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib

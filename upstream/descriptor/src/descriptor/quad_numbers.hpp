@@ -8,8 +8,7 @@
 
 #include "opencv2/core/hal/intrin.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 // What kernels/mappings.hpp compares: numbers of one channel,
 inline int64 least(int64 a, int64 b) { return std::min(a, b); }
@@ -39,8 +38,7 @@ inline Lanes fourTimes(const Lanes& a) { return v_shl<2>(a.v); }
 inline Lanes quarter(const Lanes& a) { return v_shr<2>(a.v); }
 #endif
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 // Behind what its templates call.
 #include "kernels/mappings.hpp"

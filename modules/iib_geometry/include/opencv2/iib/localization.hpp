@@ -11,8 +11,7 @@
 #include "opencv2/core.hpp"
 #include "opencv2/core/affine.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @addtogroup iib_geometry
 //! @{
@@ -289,7 +288,6 @@ private:
 
 //! @}
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

@@ -4,8 +4,7 @@
 
 #include "opencv2/core.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @addtogroup iib_geometry
 //! @{
@@ -70,7 +69,6 @@ CV_EXPORTS_W bool findRelativePose(InputArray points1, InputArray points2, Input
 
 //! @}
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

@@ -4,8 +4,7 @@
 
 #include "opencv2/core.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @addtogroup iib_geometry
 //! @{
@@ -43,7 +42,6 @@ CV_EXPORTS_W double confidenceLimit(double probability, int dimensions);
 
 //! @}
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif

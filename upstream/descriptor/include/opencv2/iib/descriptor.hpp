@@ -7,8 +7,7 @@
 
 #include "opencv2/iib/features.hpp"
 
-namespace cv {
-namespace iib {
+namespace cv { namespace iib {
 
 //! @addtogroup iib
 //! @{
@@ -101,7 +100,6 @@ typedef IIBDescriptorExtractor IIB;  //!< the paper's name
 
 //! @}
 
-}  // namespace iib
-}  // namespace cv
+}}  // namespace cv::iib
 
 #endif
