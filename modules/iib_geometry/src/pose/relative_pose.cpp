@@ -99,6 +99,11 @@ PoseErrors estimateErrors(
                                                                        problem.parameters(), LEAST_NOISE));
     const bool hasDirection = isDirectionCertain(
             fit.squared, problem.leastParallaxes(fit.model, fit.squared, limit), limit, verdict);
+    // Where the direction may be that of a turn, another pose is a rival all the same.
+    std::vector<double> parallaxes;
+    for (int i = 0; i < problem.size(); i++)
+        parallaxes.push_back(problem.parallax(fit.model, i, i));
+    const bool hasParallax = isDirectionCertain(fit.squared, parallaxes, limit, verdict);
     if (!hasDirection)
         errors.covariance += anyDirection;
     const Square<EpipolarProblem::Step> expected = errors.covariance.inv(DECOMP_SVD);
@@ -111,7 +116,7 @@ PoseErrors estimateErrors(
         if (explainsMore(fit.squared, squared, fit.errorScale, verdict))
             continue;
         const double turned = norm(Vec3d(step.val));
-        if (hasDirection && turned >= (k < fit.planar ? ofPlane : ofOthers) &&
+        if (hasParallax && turned >= (k < fit.planar ? ofPlane : ofOthers) &&
                 turned > norm(Vec3d(errors.rival.val)))
         {
             errors.hasRival = true;
