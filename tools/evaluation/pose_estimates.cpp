@@ -15,7 +15,7 @@ namespace iib_tools {
 namespace {
 
 const double CONFIDENCE = 0.9999;
-const float RATIO_BITS = 0.92f, RATIO_FLOAT = 0.8f;  // a nearest neighbour's distance over the second's
+const float RATIO_IIB = 0.92f, RATIO_BITS = 0.9f, RATIO_FLOAT = 0.8f;  // nearest distance over the second
 const double FAILED = std::numeric_limits<double>::infinity();
 
 //! Pixel to direction in the camera's axes, third coordinate 1.
@@ -104,7 +104,8 @@ std::vector<cv::DMatch> mutualRatioMatches(const Described& reference, const Des
 {
     std::vector<float> ratios;
     const std::vector<cv::DMatch> matches = mutualMatches(reference, target, ratios);
-    return underRatio(matches, ratios, reference.norm == cv::NORM_HAMMING ? RATIO_BITS : RATIO_FLOAT);
+    const float bits = reference.name.rfind("IIB", 0) == 0 ? RATIO_IIB : RATIO_BITS;
+    return underRatio(matches, ratios, reference.norm == cv::NORM_HAMMING ? bits : RATIO_FLOAT);
 }
 
 Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target)

@@ -28,7 +28,7 @@ std::vector<cv::DMatch> mutualMatches(
         const Described& reference, const Described& target, std::vector<float>& ratios);
 std::vector<cv::DMatch> underRatio(
         const std::vector<cv::DMatch>& matches, const std::vector<float>& ratios, float most);
-//! Mutual nearest neighbours under a ratio of .92 of bits, .8 of numbers.
+//! Mutual nearest neighbours under a ratio: .92 for IIB, .9 for other bits, .8 for numbers.
 std::vector<cv::DMatch> mutualRatioMatches(const Described& reference, const Described& target);
 Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target);
 //! The same with the target's points refined, and with the matches that these lead to if they are propagated.

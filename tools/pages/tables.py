@@ -47,6 +47,19 @@ def learned_points():
                  [[row[c] for c in ('detector', 'pairs', 'bytes', 'correct', 'iib')] for row in rows('learned.csv')])
 
 
+def ratios():
+    """Scores of poses, right matches and the share of wrong ones under several ratio tests."""
+    still = {'tilde_webcam': 'webcams, seasons', 'amos_daynight': 'webcams, day and night', 'mefb_exposure': 'two exposures'}
+    found, shown, lines = summaries.by(rows('ratios.csv'), 'place', 'points', 'ratio'), ('0.85', '0.9', '0.92', '0.95', '1.0'), []
+    for place, count in [*(('other light, moved', count) for count in ('500', '1000', '2000', '4000')), *((place, '1000') for place in still)]:
+        cells = [found[place, count, ratio] for ratio in shown]
+        gain = '%+.2f (%.2f to %.2f)' % tuple(float(cells[2][name]) for name in ('gain', 'low', 'high')) if cells[2]['gain'] else '–'
+        lines.append([still.get(place, place), count, cells[0]['pairs'], *(
+            '%.2f' % float(cell['at_5']) if cell['at_5'] else '%.0f, %.0f %%' % (float(cell['right']), 100 - 100 * float(cell['right']) / float(cell['matches']))
+            for cell in cells), gain])
+    return table(['images', 'points', 'pairs', *('**%s**' % ratio if ratio == '0.92' else ratio for ratio in shown), '0.92 against 0.9'], lines)
+
+
 @functools.lru_cache(None)
 def poses_by_time():
     """Rows by detector, number of points and kind of matches: `plain` by the better of PoseLib's thresholds, and `refined` here."""
@@ -423,7 +436,7 @@ def run_figures():
 
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
-    drop_in, own_descriptors, equal_sizes, presets, photographs, describing, chains, same_points, matching, step_by_step,
+    drop_in, own_descriptors, equal_sizes, presets, ratios, photographs, describing, chains, same_points, matching, step_by_step,
     matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time,
     detected_points, uncertainty, night, first_patch)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(

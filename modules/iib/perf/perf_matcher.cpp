@@ -114,7 +114,7 @@ PERF_TEST_P(IIB_MatchPair, mutual_and_ratio,
             matcher.match(trains, queries, back);
             matches.clear();
             for (const std::vector<DMatch>& m : two)
-                if (m[0].distance < .9f * m[1].distance && back[m[0].trainIdx].trainIdx == m[0].queryIdx)
+                if (m[0].distance < .92f * m[1].distance && back[m[0].trainIdx].trainIdx == m[0].queryIdx)
                     matches.push_back(m[0]);
         }
     EXPECT_EQ(pair.matches.size(), matches.size());

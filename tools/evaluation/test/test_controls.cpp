@@ -70,8 +70,8 @@ TEST(Controls, neighbours_by_known_depth)
         ratios.insert(row[6]);
         rows++;
     }
-    EXPECT_EQ(4u, ratios.size());
-    EXPECT_EQ(4 * (12u + 3), rows);  // three methods with noise
+    EXPECT_EQ(5u, ratios.size());
+    EXPECT_EQ(5 * (12u + 3), rows);  // three methods with noise
 
     // By a wrong depth no neighbour is right, and a farther wall in one image hides every point.
     cv::imwrite(folder.path("wall_2/map/depth/a.png"), cv::Mat(192, 320, CV_16U, cv::Scalar(300)));

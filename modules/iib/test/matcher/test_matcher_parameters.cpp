@@ -201,7 +201,7 @@ TEST(IIB_MatcherCreate, recommended)
     EXPECT_TRUE(matcher->levelSizes().empty());
     EXPECT_EQ(HierarchicalMatcher::EXACT, matcher->getMode());
     EXPECT_TRUE(matcher->getCrossCheck());
-    EXPECT_EQ(0.9f, matcher->getMaxRatio());
+    EXPECT_EQ(0.92f, matcher->getMaxRatio());
     expectSameParameters(*matcher, *matcher->copy());
 
     MatcherOracle oracle;

@@ -37,7 +37,8 @@ int keypointsOf(const std::vector<Match>& matches)
 {
     std::set<int> keypoints;
     for (const Match& m : matches)
-        keypoints.insert(m.keypoint);
+        if (m.keypoint >= 0)
+            keypoints.insert(m.keypoint);
     return int(keypoints.size());
 }
 
@@ -146,6 +147,7 @@ public:
     {
         location_.found = true;
         location_.reason = "";
+        location_.inliers = keypointsOf(inliers_);
         location_.cameraFromWorld = frame_.toWorld(pose_);
         location_.covariance = frame_.toWorld(covariance_);
         for (const Match& m : inliers_)
