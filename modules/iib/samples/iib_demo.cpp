@@ -26,7 +26,7 @@ static const int MAX_KEYPOINTS = 1000, MAX_ERROR = 3, MIN_CONSISTENT = 10;  // f
 static const double WIDTH = 1100;                                           // of the picture
 static const char* const SETTINGS = " (1000 keypoints an image, upright, mutual, ratio test)";
 
-//! Mutual nearest neighbours under a ratio: the recommended .9 for bits, Lowe's .8 for SIFT's numbers.
+//! Mutual nearest neighbours under a ratio: the recommended .92 for bits, Lowe's .8 for SIFT's numbers.
 static std::vector<DMatch> match(const Mat& a, const Mat& b)
 {
     std::vector<DMatch> matches, mutual;
