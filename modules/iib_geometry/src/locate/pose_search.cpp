@@ -17,6 +17,7 @@ constexpr double MAX_ERROR = .006;      // of the longer side: inlier threshold
 constexpr double LEAST_SHARE = .02;     // of inliers: in an unknown place a few matches agree by chance
 constexpr double MAX_UNCERTAINTY = .1;  // of the scene's distance: three standard deviations of the position
 constexpr size_t LEAST_REFINED = 16;    // matches with an image of the map; images with fewer are not refined
+constexpr double COMMON = 1.5;          // of the covariance: matches share errors that they do not show
 constexpr int ROUNDS = 4;               // of refining the pose and finding inliers
 constexpr int GUIDED_ROUNDS = 8;        // of guided matching, at most
 constexpr double CONVERGED = .1;        // pixels of motion that end guided matching
@@ -149,7 +150,7 @@ public:
         location_.reason = "";
         location_.inliers = keypointsOf(inliers_);
         location_.cameraFromWorld = frame_.toWorld(pose_);
-        location_.covariance = frame_.toWorld(covariance_);
+        location_.covariance = COMMON * frame_.toWorld(covariance_);
         for (const Match& m : inliers_)
             if (m.keypoint >= 0)
             {
