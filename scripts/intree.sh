@@ -114,6 +114,7 @@ say "the modules' tests, in-tree"
 say "cv2.iib"
 export PYTHONPATH="$build/python_loader"
 "$python3" "$root/modules/iib/misc/python/test/test_iib.py" -v
+"$python3" "$root/python/tests/cv2_more.py" -v
 say "the names that python/tests/test_names.py looks for"
 "$python3" "$root/python/tests/cv2_names.py" >"$build/cv2_names.txt"
 diff "$root/python/tests/cv2_names.txt" "$build/cv2_names.txt"

@@ -63,7 +63,7 @@ class Measured(unittest.TestCase):
         for r in rows[len(measure.METHODS):]:
             np.testing.assert_allclose(r['errors'], rows[0]['errors'], atol=1e-4, err_msg='the command finds the same')
         self.assertEqual(len(results['seasons']), 1)
-        self.assertIn('"told":"0.png, night: ', world)
+        self.assertIn('"text":"0.png, night: ', world)
 
 
 if __name__ == '__main__':

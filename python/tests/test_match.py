@@ -63,7 +63,7 @@ class Match(InFolder):
 
     def test_the_pose_is_that_of_matches_that_agree_before_or_after_they_lead_to_others(self):
         a, b = self.write('a.png', self.world((4, 8))), self.write('b.png', self.world((4, 8), .5, 3))
-        options = {'cameras': ['PINHOLE,480,360,400,400,240,180'], 'options': FeatureOptions(points=300)}
+        options = {'cameras': ['PINHOLE,480,360,400,400,240,180'], 'options': FeatureOptions(points=800)}
         with mock.patch('opencv_iib.measure.prepared', wraps=prepared) as preparations:
             best = match_images(a, b, **options).pose.inliers.sum()
         self.assertEqual(preparations.call_count, 2)

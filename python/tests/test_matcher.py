@@ -55,7 +55,7 @@ class MatcherTest(InFolder):
         for other in (matcher, matcher.clone(), pickle.loads(pickle.dumps(matcher))):
             self.assertEqual((other.levelSizes(), other.getMode(), other.getCrossCheck()),
                              ((), HierarchicalMatcher.EXACT, True))
-            self.assertAlmostEqual(other.getMaxRatio(), .9, 6)
+            self.assertAlmostEqual(other.getMaxRatio(), .92, 6)
         matches = matcher.match(self.query, self.train)
         self.assertEqual([(m.queryIdx, m.trainIdx) for m in matches], [(i, i + 10) for i in range(50)])
         self.train[0] = self.train[10]  # as near as the right one

@@ -12,7 +12,8 @@ const double LEAST_SCALE = .25;  // of the inliers' noise, working pixels
 /* Log likelihood that refutes a simpler model, per additional parameter and per inlier. True models gain up to 3.9 per parameter or .23 per inlier
 by noise and lens distortion; untrue ones with underestimated errors gain 5.3 and .29 (103 pairs under other light, each model). */
 const double LEAST_GAIN = 4.5, LEAST_GAIN_OF_MATCH = .24;
-const double LEAST_LOSS = .1;  // log likelihood per inlier that a transform of another part loses
+// A transform of another part loses log likelihood on inliers of the simple one, and most of them. A true one keeps nine of ten.
+const double LEAST_LOSS = .1, MOST_SHARED = .8;
 
 //! The affine part at the origin, reduced to a model.
 Matx33d simplified(const Matx33d& model, int kind)
@@ -122,9 +123,14 @@ bool isOfAnotherPart(const FittedTransform& richer, const FittedTransform& simpl
 {
     const std::vector<double> each = gains(richer, simple);
     double gain = 0;
+    int both = 0;
     for (size_t i = 0; i < each.size(); i++)
-        gain += simple.agree[i] ? each[i] : 0;
-    return gain < -LEAST_LOSS * simple.count();
+        if (simple.agree[i])
+        {
+            gain += each[i];
+            both += richer.agree[i];
+        }
+    return gain < -LEAST_LOSS * simple.count() && both < MOST_SHARED * simple.count();
 }
 
 int simplestModel(const FittedTransform& fitted, const AlignedPoints& points)

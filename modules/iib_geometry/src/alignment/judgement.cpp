@@ -68,12 +68,10 @@ std::string reasonAgainstModel(
 //! Share of the pixels without detail, since the exposure was too short or too long.
 double clippedShare(const Mat& image)
 {
-    if (image.empty())
+    if (image.empty() || image.depth() != CV_8U)  // of other depths the largest value is not known
         return 0;
-    const int depth = image.depth();
-    const double full = depth == CV_8U ? 255 : depth == CV_16U ? 65535 : norm(image, NORM_INF);
     Mat exposed;
-    inRange(image.reshape(1), full * .02, full * .98, exposed);
+    inRange(image.reshape(1), 5, 250, exposed);
     return 1 - countNonZero(exposed) / (double)exposed.total();
 }
 
@@ -84,7 +82,7 @@ Judgement refusedByFew(const WorkingPair& pair, std::string reason)
         if (const double clipped = clippedShare(pair.pixels(which)); clipped > MOST_CLIPPED)
             reason = format(
                     "%.0f %% of the %s is black or white, and too few matches agree elsewhere: align it "
-                    "through exposures between the two (align --chain)",
+                    "through exposures between the two",
                     100 * clipped, which ? "image" : "reference");
     return {reason, false, ""};
 }
@@ -161,7 +159,7 @@ Judgement judge(
     const Spread& spread = parts.spread;
     const bool isSmall = !spread.isPlace(fitted.count()) && !spread.isEverywhere(),
                isUncertain = !(norm(errors, NORM_INF) < MOST_ERROR * evidence.pair.imageDiagonal());
-    const double overlap = std::min(parts.reference.share, parts.image.share);
+    const double overlap = std::max(parts.reference.share, parts.image.share);
     if ((isSmall || isUncertain) && overlap < LEAST_OVERLAP)
         return refused(
                 format("the images overlap by %.0f %% alone, and the %d matches there do not determine "

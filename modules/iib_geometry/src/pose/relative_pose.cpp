@@ -98,7 +98,7 @@ PoseErrors estimateErrors(
                                                              : scaleWithin(fit.squared, 3 * LEAST_SCALE,
                                                                        problem.parameters(), LEAST_NOISE));
     const bool hasDirection = isDirectionCertain(
-            fit.squared, problem.leastParallaxes(fit.model, fit.squared, limit), limit, verdict);
+            fit.squared, problem.leastParallaxes(fit.model, fit.squared, limit), limit, verdict, -1);
     // Where the direction may be that of a turn, another pose is a rival all the same.
     std::vector<double> parallaxes;
     for (int i = 0; i < problem.size(); i++)

@@ -39,10 +39,8 @@ bool explainsMore(const std::vector<double>& squared, const std::vector<double>&
 }
 
 bool isDirectionCertain(const std::vector<double>& squared, const std::vector<double>& parallaxes,
-        double limit, const Verdict& verdict)
+        double limit, const Verdict& verdict, double certain)
 {
-    const double certain =
-            -1;  // a turn in place of a move is taken out of the parallaxes, so that little is left to chance
     const int matchesOfDirection = 2;
     Verdict::Marks seen(squared.size()), agree = seen;
     double chances = 0, count = 0;

@@ -15,9 +15,9 @@ bool explainsMore(const std::vector<double>& squared, const std::vector<double>&
 
 /** Whether the direction of t is significant. Matches without parallax tell nothing about it. A match whose parallax is much longer than the limit
 agrees with a wrong direction by the chance asin(limit / parallax) 2 / pi.
-@param parallaxes of EpipolarProblem::leastParallaxes(). */
+@param certain logarithm of the false alarms that are allowed; -1 for EpipolarProblem::leastParallaxes(), which leave little to chance. */
 bool isDirectionCertain(const std::vector<double>& squared, const std::vector<double>& parallaxes,
-        double limit, const Verdict& verdict);
+        double limit, const Verdict& verdict, double certain = Verdict::CERTAIN);
 
 /** Matches within a limit, without those that are probably wrong. Their parallax differs from that of most matches, and so many matches of
 similar parallax are beyond the limit that a few are within it by chance. */
