@@ -36,6 +36,26 @@ void append(Views& views, const Point2d& first, const Point2d& second)
     views.points2.push_back(Mat(Matx12d(second.x, second.y)));
 }
 
+//! 1000 points, .1 forward of 4 to 12: noise beside the epipole must not take the direction away. A turn has none.
+TEST(RelativePose, a_short_move_forward_has_a_direction_and_a_turn_has_none)
+{
+    const auto deviation = [](const Found& result) {
+        EXPECT_TRUE(result.found) << result.reason;
+        return std::sqrt(result.covariance(3, 3) + result.covariance(4, 4));
+    };
+    RNG random(63);
+    int moves = 0, turns = 0;
+    for (int trial = 0; trial < 10; trial++)
+    {
+        const RelativePose truth = along(random, Vec3d(0, 0, 1));
+        const Found move(Views(random, truth, 1000, 0, .5, .1)), turn(Views(random, truth, 200, 0, .5, 0));
+        moves += deviation(move) < .25 && move.hasDirection(truth);
+        turns += deviation(turn) > 1;
+    }
+    EXPECT_GE(moves, 8);
+    EXPECT_GE(turns, 9);
+}
+
 TEST(RelativePose, captions_among_random_matches_are_refused)
 {
     RNG random(61);
