@@ -23,7 +23,6 @@ DRAWN = {'recommended chain': (RED, (-20, 30), 'center'), 'ALIKED-n16': (BLUE, *
          'AKAZE': ('#a16207', (0, -36), 'center'), 'SIFT': ('#047857', (14, -20), 'left'), 'SIFT normalized': ('#7e22ce', (-8, 6), 'right')}
 FAR = 1000  # centimetres
 WIDTH = 9  # inches, of every chart
-SCORE = 'score of poses in other light, limits up to 5 degrees'
 ENDS = {'elinewidth': .8}  # of confidence intervals
 MAKER = 'Matplotlib %s, FreeType %s' % (matplotlib.__version__, ft2font.__freetype_version__)  # text positions depend on them
 
@@ -33,7 +32,7 @@ def svg(figure):
     text = io.StringIO()
     figure.savefig(text, format='svg', metadata={'Date': None, 'Creator': MAKER})
     plt.close(figure)
-    return re.sub(r'(?<!>)\s+', ' ', re.sub(r'>\s+<(?!g |/svg)', '><', text.getvalue()))  # a group a line
+    return re.sub(r'(?<!>)\s+', ' ', re.sub(r'>\s+<(?!g id=|/svg)', '><', text.getvalue()))  # a named group a line
 
 
 def speed():
@@ -53,7 +52,7 @@ def speed():
     axes[2].set(xscale='log', yscale='log')  # parallel lines have a constant ratio
     for axis, title, label in zip(axes, ('Describe: larger images', 'Describe: more points', 'Match'), (
             'megapixels (1000 keypoints)', 'keypoints (1280 x 720)', 'codes on either side, cross-check')):
-        axis.set(title=title, xlabel=label, ylabel='ms')
+        axis.set(title=title, xlabel=label, ylabel='ms, AVX2')
         axis.legend()
         if axis is not axes[2]:
             axis.set(xlim=(0, None), ylim=(0, None))
@@ -61,8 +60,11 @@ def speed():
 
 
 def poses():
-    """Every method at its best ratio, in other light."""
-    return scores([('recommended chain' if method == controls.CHAIN else controls.name(method), controls.found()['other light', *method]) for method in controls.methods()])
+    """Every method at its best ratio, in other light; below them, on the pairs of `cost`, the chain and ALIKED with LightGlue."""
+    bars = [('recommended chain' if method == controls.CHAIN else controls.name(method), controls.found()['other light', *method]) for method in controls.methods()]
+    timed = {key[0]: ways['refined'] for key, ways in tables.poses_by_time().items() if key[1] == 1000}
+    return scores(bars + [('%s, %s other pairs' % (name, timed[detector]['pairs']), timed[detector]) for name, detector in (
+        ('recommended chain', 'recommended chain'), ('ALIKED + LightGlue', 'ALIKED-n16'))], 'poses of rendered places')
 
 
 def spread(rows, value='at_5'):
@@ -71,13 +73,13 @@ def spread(rows, value='at_5'):
     return values[0], [values[0] - values[1], values[2] - values[0]]
 
 
-def scores(bars):
+def scores(bars, of='poses'):
     """Scores from 0 to 1 of methods, with their confidence intervals."""
     names, rows = zip(*bars)
     values, ends = spread(rows)
     figure, axis = plt.subplots(figsize=(WIDTH, .4 * len(names) + .6), layout='constrained')
-    axis.barh(names, values, xerr=ends, error_kw=ENDS, color=[RED if name == 'recommended chain' else GREY for name in names])
-    axis.set(xlim=(0, 1), xlabel=SCORE)
+    axis.barh(names, values, xerr=ends, error_kw=ENDS, color=[RED if name.startswith('recommended chain') else GREY for name in names])
+    axis.set(xlim=(0, 1), xlabel='score of %s in other light, up to 5 degrees' % of)
     axis.grid(False)
     axis.invert_yaxis()
     return svg(figure)
@@ -110,16 +112,21 @@ def cost():
 
 
 def uncertainty():
-    """Share of errors within the limit over the confidence level, one curve per quantity."""
+    """Share of errors within the limit over the confidence level, one curve per quantity; rendered places apart from photographs."""
     rows = pd.read_csv(tables.RESULTS / 'uncertainty.csv').query('errors > 0')
     levels = list(summaries.LEVELS)
-    figure, axis = plt.subplots(figsize=(WIDTH, 5), layout='constrained')
-    for quantity, each in rows.groupby('quantity'):
-        shares = each[levels].mul(each['errors'], axis=0).sum() / each['errors'].sum()
-        axis.plot([float(level) for level in levels], shares, marker='o', label=quantity)
-    axis.plot([0, 1], [0, 1], color='grey', linestyle='--', label='as reported')
-    axis.set(xlabel='level of confidenceLimit', ylabel='share of errors inside', xlim=(0, 1), ylim=(0, 1))
-    axis.legend(frameon=False)
+    rendered = rows['data'].str.startswith('rendered')
+    figure, axes = plt.subplots(1, 2, figsize=(WIDTH, 5), layout='constrained', sharey=True)
+    for axis, title, kind in zip(axes, ('rendered places, other light', 'photographs'), (rows[rendered], rows[~rendered])):
+        for n, quantity in enumerate(sorted(set(rows['quantity']))):
+            each = kind[kind['quantity'] == quantity]
+            if len(each):
+                shares = each[levels].mul(each['errors'], axis=0).sum() / each['errors'].sum()
+                axis.plot([float(level) for level in levels], shares, marker='o', label=quantity, color='C%d' % n)
+        axis.plot([0, 1], [0, 1], color='grey', linestyle='--', label='as reported')
+        axis.set(title=title, xlabel='level of confidenceLimit', xlim=(0, 1), ylim=(0, 1))
+        axis.legend(frameon=False, fontsize='small')
+    axes[0].set(ylabel='share of errors inside')
     return svg(figure)
 
 
