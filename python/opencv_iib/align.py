@@ -111,7 +111,7 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
         among them is skipped.
     :param out: folder to write; results of an earlier call are replaced.
     :param exif: compare the images as upright as their EXIF data say.
-    :param mask: a picture, or a folder with NAME.png for an image called NAME; pixels where it is 0 are not compared.
+    :param mask: a picture, or a folder with a.jpg.png for an image a.jpg; pixels where it is 0 are not compared.
     :param max_size: images are reduced to this longer side, in pixels, before they are compared; 0: they are not.
     :param format: one of FORMATS; None: the format of each image's file, or PNG, or TIFF where only that holds all of it.
     :param crop: write the part that all aligned images show, instead of the part that the reference shows.

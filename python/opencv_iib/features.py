@@ -36,7 +36,7 @@ class FeatureOptions:
     orientation: bool = False  #: rotate regions by the keypoints' angles, or by gradients for detectors without angles
     max_size: int = 0  #: pixels of the longer side to which larger images are reduced; 0: they are not
     exif: bool = True  #: rotate images upright by their EXIF data; points stay in the stored pixels
-    mask: Optional[Path] = None  #: a mask, or a folder of masks NAME.png
+    mask: Optional[Path] = None  #: a mask, or a folder of masks that have the name of the image and .png, such as a.jpg.png
 
     def __post_init__(self) -> None:
         for field in ('detector', 'preset'):  # in any case, and members of Preset

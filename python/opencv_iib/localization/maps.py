@@ -54,7 +54,7 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     :param lines: map straight edges too, see Localizer.
     :param orb_and_akaze: the paper's points and descriptor instead of the recommended ones, also for images to be localized.
     :param exif: images are rotated upright by their EXIF data; the map then has upright cameras and poses.
-    :param mask: a mask, or a folder of masks NAME.png.
+    :param mask: a mask, or a folder of masks that have the name of the image and .png, such as a.jpg.png.
     :param max_size: pixels of the longer side to which larger images are reduced; 0: they are not.
     :return: counts of images, points, and images that were left out.
     :raises InvalidOption: for an invalid number of points, and if no image can be read.

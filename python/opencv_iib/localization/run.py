@@ -222,7 +222,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
     :param imu: EuRoC's imu.csv, which smooths the poses, see smooth_poses: for a map in metres, and images named by their times.
     :param imu_from_camera: as in smooth_poses.
     :param exif: images are rotated upright by their EXIF data; poses and cameras are those of the files' pixels.
-    :param mask: a mask, or a folder of masks NAME.png.
+    :param mask: a mask, or a folder of masks that have the name of the image and .png, such as a.jpg.png.
     :param sequence: images follow each other by their names (2 before 10) or times: each is first looked for near the previous one.
     :return: how many images have a pose, and how many there are."""
     workers, out = thread_count(workers), os.fspath(out)

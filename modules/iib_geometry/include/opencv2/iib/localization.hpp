@@ -144,7 +144,8 @@ struct Location
     - the disagreement among parts of the image;
     - the map's own error, by leave-one-out over its images; zero if no point is seen by three images.
 
-    Errors that all images of the map share, such as a wrong scale, are not included. */
+    The first two are multiplied by 1.5, for errors that matches share. Errors that all images of the map share, such as a
+    wrong scale, are not included. */
     Matx66d covariance;
     int matches = 0;              //!< number of keypoints matched with points of the map
     int inliers = 0;              //!< number of keypoints that agree with the pose
