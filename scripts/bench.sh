@@ -38,6 +38,7 @@ for round in $(seq "$rounds"); do
         done
     done
 done
+unset OPENCV_CPU_DISABLE
 machine=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 "$python3" -B "$root/tools/pages/speed.py" "$out/speed.csv" "$commit" "$machine" "$build"/speed/*.xml
 "$python3" -B "$root/tools/pages/timings.py" "$out"
