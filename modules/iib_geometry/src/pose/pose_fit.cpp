@@ -9,7 +9,7 @@ namespace {
 typedef std::vector<double> Errors;
 
 const int THRESHOLDS = 7;
-const double FIRST_THRESHOLD = 1.4, LAST_THRESHOLD = 12;  // scales
+const double FIRST_THRESHOLD = 1.4, LAST_THRESHOLD = 12;  // scales; misfit() ends at 12 times its first
 const double UNSURE = 4;  // times smaller or larger than a scale that errors show, the right one may be
 const double FINELY = 1e-9, ROUGHLY = 1e-3;  // by how much less of its loss a pose is polished
 const int FEWEST = 100, FEW_TRIALS = 1000, MANY_TRIALS = 500, MOST_TRIALS = 12000;
