@@ -118,5 +118,18 @@ class MatcherTest(Codes):
                          [m.trainIdx for m in matcher.match(self.query)])
 
 
+class GeometryTest(unittest.TestCase):
+
+    def test_views_and_transforms_of_a_rotated_and_a_moved_picture(self):
+        picture = cv2.GaussianBlur(noise(5, (320, 400)), (0, 0), 2)
+        found, points1, points2, *_, reason = cv2.iib.matchViews(picture, cv2.rotate(picture, cv2.ROTATE_90_CLOCKWISE))
+        self.assertTrue(found, reason)
+        rotated = np.column_stack((319 - points1[:, 1], points1[:, 0]))
+        np.testing.assert_allclose(np.median(points2 - rotated, axis=0), 0, atol=.1)
+        found, transform, *_, simplest, _ = cv2.iib.alignImages(picture, picture[16:, 32:], model=cv2.iib.ALIGN_AUTO)
+        self.assertEqual((found, simplest), (True, cv2.iib.ALIGN_TRANSLATION))
+        np.testing.assert_allclose(transform, [[1, 0, 32], [0, 1, 16], [0, 0, 1]], atol=.1)
+
+
 if __name__ == '__main__':
     unittest.main()
