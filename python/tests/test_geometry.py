@@ -14,7 +14,7 @@ CAMERA = np.array([[500, 0, 320], [0, 500, 240], [0, 0, 1.0]])
 
 
 def views(count=100):
-    """N x 2 in two views of points; the second camera stands to the right and looks ahead, in steps of 1 along x."""
+    """Pixels of points in two views, N x 2; the second camera stands to the right by 1."""
     random = np.random.default_rng(1)
     points = np.stack([*random.uniform(-3, 3, (2, count)), random.uniform(6, 12, count)], axis=1)
     seen = [moved @ CAMERA.T for moved in (points, points - [1, 0, 0])]
