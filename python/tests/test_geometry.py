@@ -67,7 +67,7 @@ class Alignment(unittest.TestCase):
     def test_other_pictures(self):
         alignment = opencv_iib.alignImages(*(texture(640, 480, seed=seed)[290:] for seed in (1, 2)))  # below their rectangle
         self.assertEqual((alignment.found, alignment.transform, alignment.error), (False, None, None))
-        self.assertRegex(alignment.reason, '^the images have too few matches$|no more than chance may give')
+        self.assertRegex(alignment.reason, '^the images have too few matches$|could be random')
 
 
 @unittest.skipUnless(os.path.exists('/proc/self/clear_refs'), 'no account of memory on this system')
