@@ -151,7 +151,7 @@ class ShardsTest(InFolder):
             self.expect_found(shards.search(self.folder, self.queries, 5, client), 5,
                               np.concatenate([self.codes, self.codes[:50]]))
             name = self.altered()
-            index.remove([index.images() - 1])  # all workers must map it anew
+            index.remove([index.images() - 1])  # all workers must map it again
             with self.assertRaisesRegex(opencv_iib.error, re.escape(name)):
                 shards.search(self.folder, self.queries, 5, client)
 

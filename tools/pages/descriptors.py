@@ -50,4 +50,4 @@ SCENES = {
     "view_panned": ("street, noon and dusk, camera turned", "The camera turned by ten degrees to the left and three upwards."),
     "facade_turned": ("a failure: turned by 40 degrees",
                       "The camera is turned between noon and dusk. All are described upright here, and hardly anything is left. "
-                      "matchRotated() is for such images: it finds the turn and describes the second image anew.")}
+                      "matchRotated() is for such images: it finds the turn and describes the second image again.")}
