@@ -80,7 +80,7 @@ TEST(IIB_InstructionSets, calls_leave_no_upper_halves_in_use)
 }
 #endif
 
-// Else runs under pins would all test the same kernels.
+// If pins did not work, runs under pins would all test the same kernels.
 TEST(IIB_InstructionSets, pins_work)
 {
     const char* pin = getenv("OPENCV_CPU_DISABLE");

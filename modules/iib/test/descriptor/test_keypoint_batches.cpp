@@ -21,7 +21,7 @@ Rect unionOf(const Regions& regions, const std::vector<int>& members)
     return all;
 }
 
-//! Of all regions.
+//! Batches of all regions.
 std::vector<std::vector<int>> cutBatches(const Regions& regions, int workers)
 {
     std::vector<int> all(regions.size());

@@ -16,7 +16,7 @@ const double WIDER = 4;  // variance of the error that all matches share, over t
 //! Errors that matches share.
 struct Correlation
 {
-    //! Of the matches in one part of the image, beyond that of neighbours; at least the standard deviation of this estimate.
+    //! Correlation of the matches in one part of the image, beyond that of neighbours; at least its own standard deviation.
     double inParts = 0;
     double common2 = 0;  //!< variance of the error that all matches may share, pixels^2
 };
