@@ -1,5 +1,5 @@
-# OBJECTS, which were compiled for more than the baseline, define no weak symbols: of a template's or an inline function's
-# instances the linker keeps one for the whole library, and that may be an illegal instruction on another processor.
+# Checks that OBJECTS, which are compiled for more than the baseline, define no weak symbols. Of a template's or inline function's
+# instances the linker keeps one for the whole library, which may hold illegal instructions for another processor.
 # cmake -DOBJECTS=<files> -DNM=<nm> -P DispatchTest.cmake
 if(NOT OBJECTS)
   message(SEND_ERROR "there are no dispatched objects")

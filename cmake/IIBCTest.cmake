@@ -9,7 +9,7 @@ if(IIB_DISPATCH)
   set(pins AVX512_SKX=AVX512-ICL AVX2=AVX512-SKX,AVX512-ICL SSE4_2=AVX2,AVX512-SKX,AVX512-ICL
     baseline=SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL)
 endif()
-# A pin that takes nothing from this machine would be the run without one again.
+# A pin that disables nothing on this machine would repeat the run without a pin.
 if(EXISTS /proc/cpuinfo)
   file(READ /proc/cpuinfo processor LIMIT 8192)
   set(narrower AVX512_SKX AVX2 SSE4_2)
@@ -20,11 +20,11 @@ if(EXISTS /proc/cpuinfo)
     endif()
   endforeach()
 endif()
-# Suites of kernels, which compare every instruction set with naive code over sizes and alignments, run under each pin by
-# day; the others, whose answers cannot differ where those agree, once by day and under each pin by night.
+# Suites of kernels compare every instruction set with naive code over sizes and alignments. They always run under each pin;
+# the other suites run under pins only with the label `nightly`, since their results cannot differ if the kernels agree.
 set(kernels_of_opencv_test_iib Kernels Hamming Bits Boxes _Rotated GradientOrientation Normalization Refinement Matcher_Sizes Golden InstructionSets)
 set(kernels_of_opencv_test_iib_index MappedIndex)
-set(kernels_of_opencv_test_iib_geometry "")  # has none of its own
+set(kernels_of_opencv_test_iib_geometry "")  # it has no kernels
 foreach(program opencv_test_iib_geometry opencv_test_iib opencv_test_iib_index)  # the longest suites first
   set(suites "${PROJECT_BINARY_DIR}/${program}.suites.cmake")
   add_custom_command(TARGET ${program} POST_BUILD
@@ -44,7 +44,7 @@ if(TARGET iib_demo AND IIB_PYTHON)
 endif()
 
 if(IIB_SANITIZE)
-  return()  # an instrumented build adds nothing to tests of headers, times and symbols
+  return()  # tests of headers, times and symbols do not depend on instrumentation
 endif()
 
 add_test(NAME perf-smoke COMMAND opencv_perf_iib --perf_min_samples=1 --perf_force_samples=1)
@@ -66,7 +66,7 @@ list(REMOVE_DUPLICATES compilers)
 add_test(NAME headers COMMAND "${CMAKE_COMMAND}" "-DCOMPILERS=${compilers}"
   "-DINCLUDE=${IIB_DIR}/include;${IIB_INDEX_DIR}/include;${IIB_GEOMETRY_DIR}/include"
   "-DOPENCV_INCLUDE=${OpenCV_INCLUDE_DIRS}" -P "${PROJECT_SOURCE_DIR}/cmake/HeaderTest.cmake")
-# No source compiles with -ffast-math, and the build's own flags undo it where a user's flags hold it.
+# No source compiles with -ffast-math, and the build's flags undo it if the user's flags contain it.
 set(fast_math "${CMAKE_CXX_COMPILER}" -std=c++11 -ffast-math)
 set(source -fsyntax-only -x c++ "-I${IIB_DIR}/include")
 foreach(folder IN LISTS OpenCV_INCLUDE_DIRS)
@@ -82,21 +82,21 @@ if(IIB_PYTHON)
   add_test(NAME includes COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/scripts/helpers/includes_test.py" "${IIB_DIR}"
     "${PROJECT_SOURCE_DIR}/modules/iib_index" "${IIB_GEOMETRY_DIR}")
   set(pages "${PROJECT_SOURCE_DIR}/tools/pages")
-  add_test(NAME pages COMMAND "${IIB_PYTHON}" -B "${pages}/pages.py" --check)  # writing them anew changes nothing
+  add_test(NAME pages COMMAND "${IIB_PYTHON}" -B "${pages}/pages.py" --check)  # fails if writing the pages would change them
   add_test(NAME pages-test COMMAND "${IIB_PYTHON}" -B "${pages}/test/test_pages.py")
   add_test(NAME pages-names COMMAND "${IIB_PYTHON}" -B "${pages}/test/check_names.py" "${PROJECT_BINARY_DIR}")
   set_tests_properties(pages pages-test PROPERTIES SKIP_REGULAR_EXPRESSION "is not installed|No module named")
   add_test(NAME mutants COMMAND "${IIB_PYTHON}" "${PROJECT_SOURCE_DIR}/tools/mutation/mutate.py"
     --source "${PROJECT_SOURCE_DIR}" --check)
 endif()
-# The Python package, linked with what is built here already. The script skips by itself where there is no package index.
-if(UNIX AND NOT APPLE AND TARGET opencv_iib_geometry)  # which the package has, and whose OpenCV may be missing
+# The Python package, linked with the library built here. The script skips by itself without a package index.
+if(UNIX AND NOT APPLE AND TARGET opencv_iib_geometry)  # a part of the package; its OpenCV modules may be missing
   add_library(opencv_iib_static STATIC $<TARGET_OBJECTS:opencv_iib> $<TARGET_OBJECTS:opencv_iib_index>
     $<TARGET_OBJECTS:opencv_iib_geometry>)
   add_test(NAME python COMMAND "${CMAKE_COMMAND}" -E env "OpenCV_DIR=${OpenCV_DIR}"
     "${PROJECT_SOURCE_DIR}/scripts/helpers/python_test.sh" "$<TARGET_FILE:opencv_iib_static>")
   set_tests_properties(python PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: python tests \\("
-    COST 1000)  # begun first, so that nothing waits for it at the end
+    COST 1000)  # it takes longest, so it starts first
 endif()
 if(UNIX AND NOT APPLE)
   set(symbol_test "-DNM=${CMAKE_NM}" "-DREADELF=${CMAKE_READELF}" "-DVERSION=${PROJECT_VERSION}"

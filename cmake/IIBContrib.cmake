@@ -1,12 +1,12 @@
 # Target iib_contrib: the descriptors of opencv_contrib's xfeatures2d, which no Debian package has, from the source that
-# scripts/helpers/opencv_contrib_source.py brings, against the OpenCV at hand. Only what cv::Feature2D describes with: no OpenCL,
-# no tables of BoostDesc and VGG, which OpenCV's own build would download; SURF, which is not free, for who asks for it.
+# scripts/helpers/opencv_contrib_source.py downloads, against the installed OpenCV. Only descriptors of cv::Feature2D: no OpenCL,
+# no tables of BoostDesc and VGG, which OpenCV's own build would download. SURF is not free, and optional.
 set(xfeatures2d "${IIB_CONTRIB_SOURCE}/opencv_contrib/modules/xfeatures2d")
 if(NOT EXISTS "${xfeatures2d}/src/beblid.cpp")
   message(FATAL_ERROR "IIB_CONTRIB_SOURCE is to be the folder that scripts/helpers/opencv_contrib_source.py prints, "
     "not \"${IIB_CONTRIB_SOURCE}\"")
 endif()
-# Headers that OpenCV's own build generates and its sources ask for. Empty ones mean: no optional feature.
+# Headers that OpenCV's own build generates and its sources include. Empty ones mean: no optional feature.
 set(stubs "${CMAKE_CURRENT_BINARY_DIR}/contrib_stubs")
 foreach(stub cvconfig.h cv_cpu_config.h custom_hal.hpp)
   file(WRITE "${stubs}/${stub}" "")
@@ -22,8 +22,8 @@ if(IIB_CONTRIB_NONFREE)
   target_compile_definitions(iib_contrib PRIVATE OPENCV_ENABLE_NONFREE INTERFACE IIB_WITH_SURF)
 endif()
 target_compile_definitions(iib_contrib PRIVATE __OPENCV_BUILD=1 INTERFACE IIB_WITH_CONTRIB)
-target_compile_options(iib_contrib PRIVATE -w)  # not ours to mend
-# The installed headers come first: of the source tree's core only the private ones are wanted.
+target_compile_options(iib_contrib PRIVATE -w)  # not this project's code
+# The installed headers come first; from the source tree's core only private headers are needed.
 target_include_directories(iib_contrib SYSTEM PUBLIC "${xfeatures2d}/include"
   PRIVATE ${OpenCV_INCLUDE_DIRS} "${stubs}" "${IIB_CONTRIB_SOURCE}/opencv/modules/core/include")
 target_link_libraries(iib_contrib PUBLIC opencv_core opencv_imgproc opencv_features2d)

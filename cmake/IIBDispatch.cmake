@@ -21,7 +21,7 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND CMAKE_SIZEOF_VOID
   set(IIB_AVX512_ICL_FEATURES ${IIB_AVX512_SKX_FEATURES} AVX512_ICL)
   set(IIB_AVX512_ICL_FLAGS
     "${IIB_AVX512_SKX_FLAGS} -mavx512ifma -mavx512vbmi -mavx512vnni -mavx512vbmi2 -mavx512bitalg -mavx512vpopcntdq")
-  if(MINGW)  # GCC takes AVX's variables on the stack for aligned, which they are not there (GCC bug 54412)
+  if(MINGW)  # GCC assumes aligned AVX variables on the stack, which they are not here (GCC bug 54412)
     foreach(isa AVX2 AVX512_SKX AVX512_ICL)
       string(APPEND IIB_${isa}_FLAGS " -Wa,-muse-unaligned-vector-move")
     endforeach()
@@ -66,7 +66,7 @@ function(iib_add_dispatched_file target src_dir name)
 ")
   set(modes BASELINE)
   set_source_files_properties("${src_dir}/${name}.dispatch.cpp" PROPERTIES COMPILE_OPTIONS "${IIB_ADDRESS_ALONE}"
-    SKIP_PRECOMPILE_HEADERS ON)  # made with other flags
+    SKIP_PRECOMPILE_HEADERS ON)  # they are compiled with other flags
   foreach(isa IN LISTS IIB_DISPATCH)
     string(TOLOWER ${isa} suffix)
     set(file "${gen}/${name}.${suffix}.cpp")
@@ -74,7 +74,7 @@ function(iib_add_dispatched_file target src_dir name)
       CONTENT "#include \"${src_dir}/precomp.hpp\"\n#include \"${kernel}\"\n" @ONLY)
     set(features ${IIB_${isa}_FEATURES})
     list(TRANSFORM features REPLACE "(.+)" "CV_CPU_COMPILE_\\1=1")
-    # GCC takes the undefined halves in its own AVX-512 headers for uninitialized variables (GCC bug 105593).
+    # GCC warns about undefined halves in its own AVX-512 headers (GCC bug 105593).
     set(quiet "")
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
       set(quiet "-Wno-uninitialized -Wno-maybe-uninitialized")

@@ -1,4 +1,4 @@
-# The one place for compiler flags: they hold for the library, the tests and opencv_ts.
+# All compiler flags, for the library, the tests and opencv_ts.
 set(CMAKE_CXX_STANDARD 11)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -11,7 +11,7 @@ else()
   set(IIB_WARNINGS -Wall -Wextra -Wshadow -Wmissing-declarations)
 endif()
 
-# The kernels add numbers in neighbouring lanes by shifts of wider lanes: other bits where the high byte comes first.
+# The kernels add neighbouring lanes by shifts of wider lanes, which needs a little-endian processor.
 include(TestBigEndian)
 test_big_endian(IIB_BIG_ENDIAN)
 if(IIB_BIG_ENDIAN)
@@ -31,16 +31,16 @@ if(IIB_SANITIZE)
   list(APPEND IIB_FLAGS -fsanitize=${argument} -fno-sanitize-recover=all -fno-omit-frame-pointer -g1)
   add_link_options(-fsanitize=${argument})
 endif()
-# For kernels and tests, which GCC compiles slowest: the cheapest flags that find every access out of bounds. scripts/fuzz.sh
+# Kernels and tests, which GCC compiles slowest, get the cheapest flags that find every access out of bounds. scripts/fuzz.sh
 # finds other undefined behaviour and uses after a scope, with clang and all flags. Checks by
-# calls (asan-instrumentation-with-call-threshold=0) would keep so many masks of AVX-512 in memory that GCC 12 trips over
-# them: it stores one byte of a mask (kmovb) and reads four back.
+# calls (asan-instrumentation-with-call-threshold=0) would keep many AVX-512 masks in memory, which reveals a bug of
+# GCC 12: it stores one byte of a mask (kmovb) and reads four back.
 set(IIB_ADDRESS_ALONE "")
 if("address" IN_LIST sanitizers AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(IIB_ADDRESS_ALONE -fno-sanitize=undefined -fno-sanitize-address-use-after-scope)
 endif()
 
-# What Debian builds its packages with. FORTIFY_SOURCE needs an optimizing build and gets in the way of sanitizers.
+# The hardening flags of Debian's packages. FORTIFY_SOURCE needs an optimized build and conflicts with sanitizers.
 function(iib_harden target)
   if(NOT UNIX OR IIB_SANITIZE)
     return()

@@ -4,13 +4,13 @@ include(CMakePackageConfigHelpers)
 set(include_dir "${CMAKE_INSTALL_INCLUDEDIR}/opencv4")
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/opencv_iib")
 
-add_custom_target(iib_installed)  # all that `cmake --install` needs
+add_custom_target(iib_installed)  # everything that `cmake --install` needs
 
 # The library opencv_NAME and the headers of a folder.
 function(iib_install_library name dir)
   set(target opencv_${name})
   target_include_directories(${target} INTERFACE "$<INSTALL_INTERFACE:${include_dir}>")
-  # Outside of the system's folders, one library finds the other beside itself.
+  # Outside of the system's folders, a library finds the others in its own folder.
   if(UNIX AND NOT APPLE AND NOT CMAKE_INSTALL_PREFIX STREQUAL "/usr" AND NOT name STREQUAL "iib")
     set_target_properties(${target} PROPERTIES INSTALL_RPATH "\$ORIGIN")
   endif()
@@ -33,7 +33,7 @@ write_basic_package_version_file(opencv_iibConfigVersion.cmake COMPATIBILITY Sam
 install(FILES "${PROJECT_BINARY_DIR}/opencv_iibConfig.cmake" "${PROJECT_BINARY_DIR}/opencv_iibConfigVersion.cmake"
   DESTINATION "${package_dir}")
 
-# What is linked by pkg-config finds the library in the prefix itself, unless that is the system's.
+# Programs linked by pkg-config find the library in the prefix, unless that is the system's.
 set(pc_rpath "-Wl,-rpath,\${libdir} ")
 if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
   set(pc_rpath "")

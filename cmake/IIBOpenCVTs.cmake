@@ -17,7 +17,7 @@ if(DEFINED ENV{XDG_CACHE_HOME})
 else()
   set(cache "$ENV{HOME}/.cache/opencv_iib")
 endif()
-# Not under test: without sanitizers, so that one build of it serves all.
+# Without sanitizers, so that one build serves all.
 string(REPLACE ";" " " flags "${CMAKE_CXX_FLAGS} ${IIB_REQUIRED_FLAGS}")
 file(SHA1 "${PROJECT_SOURCE_DIR}/cmake/ts/CMakeLists.txt" recipe)
 string(SHA1 key "${OPENCV_SOURCE_DIR} ${OpenCV_VERSION} ${CMAKE_CXX_COMPILER} ${CMAKE_CXX_COMPILER_VERSION} ${flags} ${recipe}")

@@ -1,7 +1,7 @@
 # For the Python package: OpenCV's targets from a small static OpenCV (core, imgproc, features2d, flann, calib3d), which is
-# built into the user's cache the first time, from the source that scripts/helpers/opencv_contrib_source.py brings. Delete the
+# built in the user's cache the first time, from the source that scripts/helpers/opencv_contrib_source.py downloads. Delete the
 # folder from the cache to build a newer one.
-execute_process(COMMAND "${CMAKE_COMMAND}" -E env --unset=PYTHONPATH  # which hides other packages in an isolated build
+execute_process(COMMAND "${CMAKE_COMMAND}" -E env --unset=PYTHONPATH  # it hides other packages in an isolated build
     "${Python_EXECUTABLE}" "${root}/scripts/helpers/opencv_contrib_source.py"
   OUTPUT_STRIP_TRAILING_WHITESPACE OUTPUT_VARIABLE source COMMAND_ERROR_IS_FATAL ANY)
 file(TO_CMAKE_PATH "${source}/opencv" source)
@@ -10,7 +10,7 @@ if(CMAKE_CROSSCOMPILING)
   string(APPEND static_opencv "-${CMAKE_SYSTEM_PROCESSOR}")
 endif()
 
-# step ARGUMENT...: of CMake; what it prints goes to a file, whose end is shown if it fails.
+# step ARGUMENT...: runs CMake; its output goes to a file, whose end is shown if it fails.
 function(step)
   execute_process(COMMAND "${CMAKE_COMMAND}" ${ARGV} RESULT_VARIABLE failed OUTPUT_VARIABLE log ERROR_VARIABLE log)
   if(failed)
@@ -25,9 +25,9 @@ endfunction()
 
 file(LOCK "${static_opencv}.lock" GUARD FILE)
 if(NOT EXISTS "${static_opencv}")
-  set(work "${static_opencv}.build")  # stays if this is interrupted, so that the next call goes on from there
+  set(work "${static_opencv}.build")  # kept if this is interrupted; the next call continues from it
   message(STATUS "iib: building a static OpenCV in ${work} (once, about ten minutes)")
-  # What CMake would look for on this machine, download, or build beside these modules.
+  # Options that CMake would look for on this machine, download, or build in addition to these modules.
   set(off IPP ITT OPENCL LAPACK EIGEN VA KLEIDICV PROTOBUF FLATBUFFERS ADE QUIRC OBSENSOR 1394 FFMPEG GSTREAMER V4L GTK WIN32UI
     MSMF DSHOW DIRECTX AVFOUNDATION JPEG PNG TIFF WEBP OPENJPEG JASPER OPENEXR AVIF)
   list(TRANSFORM off PREPEND WITH_)
@@ -48,8 +48,8 @@ if(NOT EXISTS "${static_opencv}")
 endif()
 file(LOCK "${static_opencv}.lock" RELEASE)
 
-unset(OpenCV_DIR CACHE)  # of the system's
+unset(OpenCV_DIR CACHE)  # the system's
 set(OpenCV_STATIC ON)
 find_package(OpenCV REQUIRED PATHS "${static_opencv}" NO_DEFAULT_PATH)
-unset(OpenCV_DIR CACHE)  # else the next run in this build folder would take it for the system's
+unset(OpenCV_DIR CACHE)  # otherwise the next run in this build folder would use it as the system's
 install(DIRECTORY "${static_opencv}/licenses/" DESTINATION opencv_iib/licenses)

@@ -1,9 +1,9 @@
 #!/bin/sh
-# What each step from an image to a pose costs on this machine, beside ORB, BFMatcher, optical flow and MAGSAC: opencv_perf_iib,
-# opencv_perf_iib_index and opencv_perf_iib_geometry, several times, with all instruction sets in turn, with AVX2 and with SSE4.2; the least time of each test
+# Measures each step from an image to a pose on this machine, and ORB, BFMatcher, optical flow and MAGSAC for comparison. Runs opencv_perf_iib,
+# opencv_perf_iib_index and opencv_perf_iib_geometry several times, with all instruction sets, with AVX2 and with SSE4.2; the least time of each test
 # counts. Prints tables and writes build/speed.csv; the programs' own XML stays in build/speed. With --document the result goes to
-# doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew. --contrib adds BEBLID,
-# TEBLID and LATCH of opencv_contrib, whose source pip brings.
+# doc/results, and the tables of README.md and doc/performance.md and their picture are updated. --contrib adds BEBLID,
+# TEBLID and LATCH of opencv_contrib, whose source pip downloads.
 #   scripts/bench.sh [--contrib] [--document] [--rounds=N]
 . "$(dirname "$0")/helpers/lib.sh"
 
@@ -24,7 +24,7 @@ commit=$(measured_commit)
 configure -DIIB_BUILD_TESTS=ON ${contrib:+"$contrib"}
 programs="opencv_perf_iib opencv_perf_iib_index opencv_perf_iib_geometry"
 build_targets $programs
-# For half a second each, and the least time counts: neither few samples nor a busy machine's outliers are errors.
+# Each test takes half a second, and the least time counts, so few samples and outliers of a busy machine do no harm.
 options="--perf_strategy=base --perf_time_limit=0.5 --perf_min_samples=1 --perf_max_deviation=0 --perf_max_outliers=100"
 rm -rf "$build/speed"
 mkdir -p "$build/speed"

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Makes the site of the documentation in build/docs/html: guides, tutorials and the C++ reference with Doxygen, the reference of
-# the Python package, its examples with what they print and draw, and the pages of results and of localization. Any warning and any
-# dead link is an error. Where pip reaches no package index, the examples stand without their output, and the reference of the Python
-# package without the methods of its extension.
+# Makes the documentation's site in build/docs/html: guides, tutorials and the C++ reference with Doxygen, the reference of
+# the Python package, its examples with their output, and the pages of results and of localization. Any warning and any
+# dead link is an error. If pip reaches no package index, the examples have no output, and the reference of the Python
+# package lacks the methods of its extension.
 #   scripts/docs.sh [WHEEL]
-# WHEEL: the Python package, if it is built; else it is built, linked with what the tests have built, if they have.
+# WHEEL: the Python package, if it is built already; otherwise it is built, if possible with the library that the tests have built.
 . "$(dirname "$0")/helpers/lib.sh"
 
 [ $# -le 1 ] || fail "takes one wheel, not $*"

@@ -1,10 +1,10 @@
 #!/bin/sh
 # Fuzzes the library with clang's libFuzzer, address and undefined-behaviour sanitizers:
-# scripts/fuzz.sh [--plain] [--keep] [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each, one a core. What
-# is found on the way stays in the cache folder, and 200 of it, chosen anew, begin the next run, of any checkout; an input that fails is
-# kept in build-fuzz/failures and belongs into fuzz/corpus, with a test, once the bug is fixed. --plain leaves the
-# sanitizers out and makes inputs smaller, so that many times as many are compared with the oracles; its corpus is the
-# same. --keep adds the smallest inputs to fuzz/corpus that reach code which none of its own does.
+# scripts/fuzz.sh [--plain] [--keep] [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each, one a core. New
+# inputs stay in the cache folder, and a random 200 of them begin the next run of any checkout. An input that fails is
+# kept in build-fuzz/failures; add it to fuzz/corpus with a test once the bug is fixed. --plain leaves the
+# sanitizers out and makes inputs smaller, so that many times as many are compared with the oracles; the corpus is the
+# same. --keep adds the smallest inputs to fuzz/corpus that reach new code.
 . "$(dirname "$0")/helpers/lib.sh"
 
 corpus="$cache/fuzz"
@@ -35,7 +35,7 @@ done
 need $build_packages clang xz-utils
 if [ -n "$plain" ]; then
     build="$root/build-fuzz-plain" longest=40
-    # Where numbers are compared is not recorded: it takes half of the time.
+    # Comparisons of numbers are not traced: this takes half of the time.
     configure -DCMAKE_CXX_COMPILER=clang++ -DIIB_SANITIZE=fuzzer \
         -DCMAKE_CXX_FLAGS=-fno-sanitize-coverage=trace-cmp
 else
@@ -47,7 +47,7 @@ say "building the targets"
 # shellcheck disable=SC2046
 cmake --build "$build" --target $(printf 'iib_fuzz_%s ' "$@")
 
-# What costs more than the library's own work: a record of where each block of memory was allocated, a long wait before
+# Switches off what takes longer than the library: a record of where each block of memory was allocated, a long wait before
 # it is used again, libFuzzer's statistics of rare features and its search for leaks, and files on a disk. The suites
 # under the sanitizers have all of it.
 export ASAN_OPTIONS="malloc_context_size=0:quarantine_size_mb=4:${ASAN_OPTIONS:-}"
@@ -55,7 +55,7 @@ export ASAN_OPTIONS="malloc_context_size=0:quarantine_size_mb=4:${ASAN_OPTIONS:-
 failures="$root/build-fuzz/failures"
 mkdir -p "$failures" "$corpus"
 
-# run TARGET OPTION... FOLDER...: as a child that goes when this process is ended.
+# run TARGET OPTION... FOLDER...: runs it as a child that ends with this process.
 run() {
     target=$1
     shift
@@ -66,7 +66,7 @@ run() {
     wait $child
 }
 
-# replay TARGET: its inputs with the kernels of each other instruction set.
+# replay TARGET: runs its inputs with the kernels of each other instruction set.
 replay() {
     for off in AVX512-SKX,AVX512-ICL AVX2,AVX512-SKX,AVX512-ICL SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL; do
         export OPENCV_CPU_DISABLE=$off
@@ -75,13 +75,13 @@ replay() {
     unset OPENCV_CPU_DISABLE
 }
 
-# save TARGET: what a run has found, also one that was interrupted.
+# save TARGET: saves the new inputs of a run, even an interrupted one.
 save() {
     mkdir -p "$corpus/$1"
     [ ! -d "$build/$1.corpus" ] || cp -R "$build/$1.corpus/." "$corpus/$1"
 }
 
-# sample TARGET: some of what was kept. A slow target would do nothing else in its time, were it to begin with all of it.
+# sample TARGET: a sample of the saved inputs. A slow target would spend all its time on running all of them.
 sample() {
     save "$1"
     rm -rf "$build/$1.corpus"
@@ -99,13 +99,13 @@ fuzz() {
     save "$1"
     if [ -z "$found" ] &&
         { [ -n "$plain" ] || replay "$1"; } &&
-        # Into the first folder; the lines that are reached count, not how often.
+        # Merges into the first folder; only which lines are reached counts, not how often.
         { [ -z "$keep" ] || run "$1" -merge=1 -use_counters=0 "$root/fuzz/corpus/$1" "$corpus/$1"; }; then
         executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$1.log" | head -n 1)
         echo "$1: $executions executions, $(ls "$corpus/$1" | wc -l) inputs kept"
         touch "$build/$1.passed"
     else
-        tail -n 30 "$build/$1.log" | sed "s/^/$1: /"  # others write meanwhile
+        tail -n 30 "$build/$1.log" | sed "s/^/$1: /"  # other targets write at the same time
     fi
 }
 

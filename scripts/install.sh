@@ -1,8 +1,8 @@
 #!/bin/sh
 # Builds the library in build/ and installs it with its headers, its CMake package and its pkg-config file:
 #   scripts/install.sh [--prefix=FOLDER]
-# The folder is /usr/local unless --prefix says otherwise. What is missing is installed through apt, and sudo is asked
-# for where the user may not write.
+# The folder is /usr/local or --prefix. Missing packages are installed through apt, and sudo is asked
+# for if the user may not write.
 . "$(dirname "$0")/helpers/lib.sh"
 
 prefix=/usr/local
@@ -20,7 +20,7 @@ esac
 need $build_packages
 build_library iib_installed
 
-# The nearest folder that exists decides whether root is needed.
+# The nearest existing folder decides whether root is needed.
 existing="$prefix"
 while [ ! -d "$existing" ]; do
     existing=$(dirname "$existing")
@@ -31,7 +31,7 @@ say "installing in $prefix"
 $as_root cmake --install "$build" --prefix "$prefix"
 case "$prefix" in
 /usr | /usr/local)
-    # The loader's cache learns of the new library.
+    # Adds the library to the loader's cache.
     $as_root ldconfig
     ;;
 *)

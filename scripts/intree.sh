@@ -1,20 +1,20 @@
 #!/bin/sh
-# Builds OpenCV's own source with these modules through OPENCV_EXTRA_MODULES_PATH, and runs the tests of C++, of speed
-# (a smoke run) and of Python there.
+# Builds OpenCV's own source with these modules through OPENCV_EXTRA_MODULES_PATH, and runs its C++ tests, its performance tests
+# (a smoke run) and its Python tests.
 #   scripts/intree.sh [--short] [--modules FOLDER] [--source debian|contrib|contrib-5] [options of CMake]
-# --short: what scripts/test.sh has not shown of the same sources: that they build here, give the same bits (golden tests)
-# and the API of C++ and Python; OpenCV is built with little optimization, for AVX512_ICL alone, for which it has no code
+# --short: only what scripts/test.sh does not test: that the sources build here, give the same bits (golden tests)
+# and the API of C++ and Python. OpenCV is built with little optimization and only for AVX512_ICL, for which it has no code
 # itself.
-# --modules: the module iib of another folder, alone, its tests of C++, and a smoke run of the speed of the descriptor.
+# --modules: only the module iib of another folder: its C++ tests, and a smoke run of the descriptor's performance tests.
 # debian: the distribution's source of its OpenCV. contrib: the newest OpenCV 4 with opencv_contrib's xfeatures2d,
 # from the source distribution of opencv-contrib-python; contrib-5: the newest OpenCV 5 in the same way.
-# JOBS limits the parallel jobs. The last line tells the build's folder.
+# JOBS limits the parallel jobs. The last line names the build's folder.
 . "$(dirname "$0")/helpers/lib.sh"
 
 dispatch="SSE4_1;SSE4_2;AVX;FP16;AVX2;AVX512_SKX;AVX512_ICL"
 flags=-O3 tests="*" geometry="*" short="" quick=""
 if [ "${1:-}" = --short ]; then
-    # The widest that this machine has, which a test asks for.
+    # The widest instruction set of this machine, which a test needs.
     dispatch="AVX2"
     ! grep -qw avx512bw /proc/cpuinfo || dispatch="AVX512_SKX"
     ! grep -qw avx512_vpopcntdq /proc/cpuinfo || dispatch="AVX512_ICL"
@@ -22,7 +22,7 @@ if [ "${1:-}" = --short ]; then
     tests="IIB_Golden*:IIB_IO*:IIB_Errors*:IIB_Input*:IIB_KeyPoints*:IIB_MatcherCreate*:IIB_MatcherEdges*:IIB_IndexFile*:IIB_InstructionSets*"
     tests="$tests-*upper_halves*" # which compilers free from -O2 on
     geometry="RelativePose*:Verdict*:Alignment*:Localization*"
-    # Most of the time of OpenCV's objects goes into its headers; it precompiles none where it finds ccache.
+    # Most of the compile time goes into OpenCV's headers, and with ccache OpenCV precompiles none.
     quick="-DENABLE_PRECOMPILED_HEADERS=ON -DENABLE_CCACHE=OFF -DCMAKE_CXX_COMPILER_LAUNCHER= -DWITH_OPENCL=OFF"
     shift
 fi
@@ -53,7 +53,7 @@ debian)
     need $build_packages xz-utils libpng-dev zlib1g-dev python3-dev python3-numpy
     source=$("$root/scripts/helpers/opencv_source.sh")
     build="$source.intree$short"
-    # What Debian's source lacks.
+    # Files that Debian's source lacks.
     options="-DWITH_QUIRC=OFF -DWITH_PROTOBUF=OFF -DWITH_ADE=OFF -DWITH_JPEG=OFF"
     ;;
 contrib | contrib-5)
@@ -62,13 +62,13 @@ contrib | contrib-5)
     [ "$kind" = contrib ] || major=5
     source=$("$python3" "$root/scripts/helpers/opencv_contrib_source.py" "$major")
     build="$source.intree$short"
-    # Only xfeatures2d of opencv_contrib: CMake looks at every module of a folder that it is given.
+    # Only xfeatures2d of opencv_contrib: CMake reads every module of a given folder.
     mkdir -p "$source/chosen"
     ln -sfn "$source/opencv_contrib/modules/xfeatures2d" "$source/chosen/xfeatures2d"
     extra_modules="$source/chosen;$extra_modules"
     list="$list,xfeatures2d,imgcodecs"
     source="$source/opencv"
-    # Nothing is fetched: without their tables, BoostDesc and VGG throw when they are created.
+    # Downloads nothing: without their tables, BoostDesc and VGG throw when they are created.
     options="-DOPENCV_SKIP_FEATURES2D_DOWNLOADING=ON -DWITH_PROTOBUF=OFF -DWITH_ADE=OFF -DWITH_QUIRC=OFF"
     options="$options -DWITH_AVIF=OFF -DWITH_OBSENSOR=OFF -DWITH_FLATBUFFERS=OFF -DWITH_OPENCL=OFF"
     ;;
@@ -82,7 +82,7 @@ exec 8>"$build.lock"
 flock 8
 
 say "building OpenCV with the module in $build (minutes for the first time)"
-# OFF: formats and back ends that nothing here reads. AVX512_ICL (VPOPCNTDQ) is not in OpenCV's default list.
+# OFF: formats and back ends that are not used here. AVX512_ICL (VPOPCNTDQ) is not in OpenCV's default list.
 quietly "$build.log" cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DOPENCV_EXTRA_MODULES_PATH="$extra_modules" -DBUILD_LIST="$list" \
     "-DPYTHON3_EXECUTABLE=$python3" \

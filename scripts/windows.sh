@@ -1,7 +1,7 @@
 #!/bin/sh
 # Cross-compiles OpenCV, the modules and their tests for Windows with Debian's MinGW, and runs the tests under Wine.
 #   scripts/windows.sh [--gtest_...]
-# OpenCV's source is that of the newest opencv-contrib-python 4, which pip brings: Debian's lacks PNG. The first time
+# OpenCV's source is that of the newest opencv-contrib-python 4 from pip, since Debian's lacks PNG. The first time
 # takes about half an hour on two cores.
 . "$(dirname "$0")/helpers/lib.sh"
 
@@ -40,7 +40,7 @@ configure "$toolchain" "-DOPENCV_SOURCE_DIR=$source" "-DOpenCV_DIR=$opencv/lib/c
 programs="opencv_test_iib opencv_test_iib_index opencv_test_iib_geometry"
 build_targets $programs
 
-# Where Windows looks for libraries: the build, OpenCV, and the compiler's own.
+# Windows' search path for libraries: the build, OpenCV, and the compiler's own.
 WINEPATH="$build;$opencv/bin;/usr/x86_64-w64-mingw32/lib"
 WINEPATH="$WINEPATH;$(dirname "$(x86_64-w64-mingw32-g++-posix -print-file-name=libstdc++-6.dll)")"
 export WINEPATH WINEDEBUG=-all WINEPREFIX="$cache/wine"

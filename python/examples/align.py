@@ -1,4 +1,4 @@
-"""Aligns an image in other light with a reference: python align.py [REFERENCE IMAGE]"""
+"""Aligns an image under changed illumination with a reference: python align.py [REFERENCE IMAGE]"""
 import sys
 
 import cv2

@@ -1,4 +1,4 @@
-"""Matches two images of a place in different light: python day_night.py [A B]"""
+"""Matches two images of a place under different illumination: python day_night.py [A B]"""
 import sys
 
 import cv2

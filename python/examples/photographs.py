@@ -40,12 +40,12 @@ FASTER = {'ba_global_frames_ratio': 1.2, 'ba_global_points_ratio': 1.2, 'ba_glob
 
 
 def relit(image):
-    """Gamma 2.2, and a shade across to a quarter."""
+    """Darkens an image: gamma 2.2, and a ramp down to a quarter across it."""
     return np.rint(255 * (image / 255) ** 2.2 * np.linspace(1, .25, image.shape[1])[:, None]).astype(np.uint8)
 
 
 def normalized_sift(image, points):
-    """SIFT's descriptors as COLMAP stores them: square roots of shares, times 512."""
+    """SIFT's descriptors as COLMAP stores them (RootSIFT): square roots of the shares, times 512."""
     sift = cv2.SIFT_create(points)
     found = sorted(opencv_iib.NormalizedDetector(sift).detect(image), key=lambda point: -point.response)[:points]
     found, floats = sift.compute(image, found)
@@ -86,7 +86,7 @@ def make_database(method, images, points, folder, chain):
 
 
 def reconstruct(method, images, points, work):
-    """The largest component, a pycolmap.Reconstruction, and how many images the others have."""
+    """The largest component, a pycolmap.Reconstruction, and the number of images in the other ones."""
     folder = work / method
     if not (folder / 'model').exists():
         folder.mkdir(parents=True, exist_ok=True)
@@ -132,7 +132,7 @@ def pose_errors(found, truth):
 
 
 def find_others(images, other, model, points, work):
-    """A sentence about the images in other light."""
+    """A sentence about the images under changed illumination."""
     queries = [(image.name, image.camera, image.cam_from_world().inverse()) for image in map(model.image, model.reg_image_ids())
              if image.name in other]
     depths = {name: depth for name, (_, depth) in poses(model).items()}

@@ -1,4 +1,4 @@
-"""Views of a drawn scene with known poses, for examples that are given no images."""
+"""Views of a drawn scene with known poses, for examples that run without images."""
 import sys
 from pathlib import Path
 

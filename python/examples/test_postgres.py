@@ -14,7 +14,7 @@ if SERVER:
 
 
 def plain_votes(places, codes, count=10):
-    """What Places.vote returns, by HierarchicalMatcher."""
+    """The result that Places.vote should return, computed by HierarchicalMatcher."""
     matcher = HierarchicalMatcher()
     matcher.add(list(places.values()))
     images = matcher.knnMatchArrays(codes)[2].ravel()
@@ -28,7 +28,7 @@ class PlacesTest(unittest.TestCase):
 
     def setUp(self):
         self.connection = psycopg.connect(SERVER)
-        self.addCleanup(self.connection.close)  # which rolls everything back
+        self.addCleanup(self.connection.close)  # rolls everything back
         rng = np.random.default_rng(9)
         self.walk = {f'noon/{i}': rng.integers(0, 256, (15 + i % 3, 20), np.uint8) for i in range(12)}
         self.night = {}
@@ -123,8 +123,8 @@ class PlacesTest(unittest.TestCase):
         if not self.connection.execute("SELECT 1 FROM pg_available_extensions WHERE name = 'vector'").fetchone():
             self.skipTest('pgvector is not installed on this server')
         self.connection.execute('CREATE EXTENSION IF NOT EXISTS vector')
-        self.connection.execute('SET enable_seqscan = off')  # since the table is small
-        self.connection.execute('SET jit = off')  # whose threshold the cost of what is off exceeds
+        self.connection.execute('SET enable_seqscan = off')  # scanning a small table would be faster
+        self.connection.execute('SET jit = off')  # disabled plans have a cost beyond its threshold
         places = self.places(self.walk)
         places.create_index()
         places.create_index()

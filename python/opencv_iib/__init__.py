@@ -1,4 +1,4 @@
-"""Feature matching that survives a change of light: the classes of ``cv2.iib``, beside any cv2 or none.
+"""Feature matching under changed illumination: the classes of ``cv2.iib``, with any cv2 or none.
 
     import opencv_iib
     iib = opencv_iib.IIB.createRecommended()

@@ -1,4 +1,4 @@
-"""Images of one place in other light, laid onto a reference: pictures, a table and a page to compare them."""
+"""Aligns images of one place under changed illumination with a reference: pictures, a table and a page to compare them."""
 from __future__ import annotations
 
 import csv
@@ -127,7 +127,7 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     reference, out = os.fspath(reference), os.fspath(out)
     options = _Options(model, exif, None if mask is None else os.path.abspath(mask), max_size, format, crop, interpolation, chain)
     options.check()
-    crew, masks = Threads(thread_count(workers)), Masks(options.mask)
+    threads, masks = Threads(thread_count(workers)), Masks(options.mask)
     check_images(reference)
     check_folder(out, (reference,))
     series = _expanded(images, out, log)
@@ -153,7 +153,7 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
                 results.remove([STATE])
 
         def do(job: Callable[[str], Aligned], paths: list[str]) -> None:
-            done.update(in_parallel(job, paths, crew))
+            done.update(in_parallel(job, paths, threads))
 
         def align_one(path: str) -> Aligned:
             found = work.align(path, names[path], part)

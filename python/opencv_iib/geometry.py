@@ -39,7 +39,7 @@ class _Alignment(NamedTuple):
 
 
 class Alignment(_Alignment):
-    """What :func:`alignImages` returns, a tuple (found, transform, error, matches).
+    """The result of :func:`alignImages`, a tuple (found, transform, error, matches).
 
     The transform is 3 x 3, from pixels of the image to pixels of the reference; the error 4 x 1, standard deviations of the places of the
     image's corners, pixels. Both are None if the images do not show the same. The matches are those that agree, M x 4: x and y in the
@@ -47,8 +47,8 @@ class Alignment(_Alignment):
     """
 
     reason: str = ''  #: why it is not found, a sentence
-    simplest: AlignmentModel  #: if found: that is true of the images; of AUTO the one of the transform
-    note: str = ''  #: a sentence, such as of a part that moved otherwise; mostly ''
+    simplest: AlignmentModel  #: if found: the simplest true model, with AUTO that of the transform
+    note: str = ''  #: advice about the transform, such as that a part moved otherwise; mostly ''
 
 
 def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:
@@ -58,7 +58,7 @@ def _numbers(value: ArrayLike, what: str) -> NDArray[Any]:
 
 def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: ArrayLike, cameraMatrix2: ArrayLike,
                      scale: float = 0, covariances: Optional[ArrayLike] = None) -> RelativePose:
-    """Finds the pose of camera 2 relative to camera 1 from matches, of which many may be wrong, as ``cv2.iib.findRelativePose``.
+    """Estimates the pose of camera 2 relative to camera 1 from matches, as ``cv2.iib.findRelativePose``. Many matches may be wrong.
 
     Points must be free of lens distortion: call ``cv2.undistortPoints(points, K, distortion, P=K)`` first.
 
@@ -80,19 +80,19 @@ def findRelativePose(points1: ArrayLike, points2: ArrayLike, cameraMatrix1: Arra
 
 def alignImages(reference: ArrayLike, image: ArrayLike, model: int = AlignmentModel.HOMOGRAPHY, referenceMask: Optional[ArrayLike] = None,
                 mask: Optional[ArrayLike] = None) -> Alignment:
-    """Aligns an image with a reference that was taken in another light, as ``cv2.iib.alignImages``.
+    """Aligns an image with a reference under changed illumination, as ``cv2.iib.alignImages``.
 
-    For images of a plane, or of anything by a camera that stays where it is, though it may turn and zoom. With cv2,
-    ``cv2.warpPerspective(image, transform, (width, height))`` has the image as the reference's camera would see it.
+    For images of a plane, or of any scene by a camera that does not move; it may rotate and zoom. With cv2,
+    ``cv2.warpPerspective(image, transform, (width, height))`` returns the image as the reference's camera would see it.
 
     :param reference: as IIBDescriptorExtractor takes it; so is `image`.
-    :param model: an AlignmentModel; the simplest one that is true of the images gives the smallest errors, and AUTO chooses it.
+    :param model: an AlignmentModel. The simplest true model gives the smallest errors, and AUTO chooses it.
     :param referenceMask: H x W uint8, 0 where no points are to be found in the reference; so is `mask` of the image.
-    :return: a tuple (found, transform, error, matches), with its `reason`. Not found: the matches are not more than chance, they span a small
-        part of what both show, as a logo does, or the images differ by more than the model.
-    :raises opencv_iib.error: for images of another type, and a model that is none.
+    :return: a tuple (found, transform, error, matches), with its `reason`. Not found: the matches could be random, they span a small
+        part of the overlap, like a logo, or the images differ by more than the model.
+    :raises opencv_iib.error: for images of another type, and an unknown model.
     """
-    images = as_image(reference), as_image(image)  # mistakes of both, before either is described
+    images = as_image(reference), as_image(image)  # checks both before either is described
     return ImageAligner(images[0], model, referenceMask).align(images[1], mask)
 
 
@@ -100,10 +100,10 @@ class ImageAligner:
     """Aligns many images with one reference as :func:`alignImages` does, and describes the reference once. Threads may share one."""
 
     def __init__(self, reference: ArrayLike, model: int = AlignmentModel.HOMOGRAPHY, mask: Optional[ArrayLike] = None) -> None:
-        """:param reference: as of alignImages; so is `model`.
-        :param mask: H x W uint8, 0 where nothing is to be found.
-        :raises opencv_iib.error: for a mask of another size or type, and a model that is none."""
-        self._reference = as_image(reference)  # which the core looks at, and does not copy
+        """:param reference: as in alignImages; so is `model`.
+        :param mask: H x W uint8, 0 where no points are to be found.
+        :raises opencv_iib.error: for a mask of another size or type, and an unknown model."""
+        self._reference = as_image(reference)  # the core refers to it and does not copy it
         self._core = _core.ImageAligner.create(self._reference, integer(model, 'model'), as_mask(mask))
 
     @staticmethod
@@ -130,7 +130,7 @@ def logFalseAlarms(points1: ArrayLike, points2: ArrayLike, inliers: ArrayLike, e
     :param points1: N x 2, pixels of image 1, of right and wrong matches; so are their matches `points2` in image 2.
     :param inliers: N marks, not 0 for inliers, as of ``cv2.findHomography``.
     :param epipolar: the model is a fundamental matrix, not a homography.
-    :param threshold: pixels: the largest distance of an inlier.
+    :param threshold: largest distance of an inlier, pixels.
     :return: logarithm to base 10 of the expected number of models with as many random inliers; above -3 it is not significant.
     :raises opencv_iib.error: for arrays of other shapes, and a threshold of 0 or less.
     """
@@ -143,7 +143,7 @@ def logFalseAlarms(points1: ArrayLike, points2: ArrayLike, inliers: ArrayLike, e
 
 
 def confidenceLimit(probability: float, dimensions: int) -> float:
-    """The limit of error @ inv(covariance) @ error that errors of poses, alignments and refined points keep with this probability, as
+    """The limit of error @ inv(covariance) @ error that errors of poses, alignments and refined points stay below with this probability, as
     ``cv2.iib.confidenceLimit``. The errors are distributed as Student's t with two degrees of freedom.
 
     :param probability: 0 or more and below 1.

@@ -102,7 +102,7 @@ def _skip(index: MappedIndex, images: Iterator[np.ndarray], folder: str) -> None
     for number in range(index.images()):
         image = next(images, None)
         if image is None or not np.array_equal(image, index.descriptors(number)):
-            raise ValueError(f'{folder} was begun with other codes or another rows_per_shard: remove it to begin anew')
+            raise ValueError(f'{folder} was begun with other codes or another rows_per_shard: remove it to start again')
 
 
 def search(folder: Path, queries: Any, k: int = 5, client: Any = None) -> Arrays:

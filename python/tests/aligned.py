@@ -1,4 +1,4 @@
-"""Images that the command align lays onto a reference."""
+"""Test images for the command align."""
 import unittest
 from unittest import mock
 
@@ -13,14 +13,14 @@ from support import InFolder, cv2, run_command, texture
 class Aligned(InFolder):
 
     def pictures(self, *names):
-        """One picture by several names, in folders."""
+        """One picture under several names, in folders."""
         picture = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC)
         for name in names:
             (self.folder / name).parent.mkdir(exist_ok=True)
         return [self.write(name, picture) for name in names]
 
     def align(self, *arguments, status=0, calls=None, stop=None):
-        """Runs the command on one thread, of which so many images are looked at until something stops it."""
+        """Runs the command on one thread. :param stop: an exception to raise after `calls` images."""
         seen = []
 
         def found(*more, real=ImageAligner.align):
@@ -34,7 +34,7 @@ class Aligned(InFolder):
         return self.rows('out/transforms.csv')
 
     def shifted(self, *kinds, suffix='.tif'):
-        """A picture, and a part of it 30 right and 20 down, each as these make them of values from 0 to 255."""
+        """A picture, and a part of it 30 pixels right and 20 down, each converted by its function from values of 0 to 255."""
         picture = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC).astype(float)
         picture = np.rint((picture - picture.min()) * (255 / np.ptp(picture)))
         for n, kind in enumerate(kinds):
@@ -44,7 +44,7 @@ class Aligned(InFolder):
             yield self.folder / f'r{n}{suffix}', self.folder / f'i{n}{suffix}', *(page if isinstance(page, list) else [page] for page in pages)
 
     def check_shifted(self, pair, *options):
-        """That the part is written as it is, where it is in the picture. Its transform."""
+        """Checks that the part is written unchanged, at its place in the picture. :return: its transform."""
         reference, image, pages, parts = pair
         row, = self.align(reference, image, '--model', 'translation', *options)
         self.assertEqual(row['verdict'], 'aligned')

@@ -1,4 +1,4 @@
-"""Three images of one picture, shifted, and the database that opencv_iib.colmap makes of them."""
+"""Three shifted images of one picture, and the database that opencv_iib.colmap makes."""
 import io
 import os
 import sqlite3
@@ -33,7 +33,7 @@ class Collection(InFolder):
             return connection.execute(sql).fetchall()
 
     def dump(self):
-        """Every row of every table, and removes the database."""
+        """All rows of all tables; removes the database."""
         with closing(sqlite3.connect(self.database)) as connection:
             rows = list(connection.iterdump())
         self.database.unlink()
@@ -44,7 +44,7 @@ class Collection(InFolder):
 
     @contextmanager
     def ended_in(self, owner, name, number=1):
-        """That the block ends with Ctrl-C in this call of a function."""
+        """Checks that the block ends with Ctrl-C in this call of a function."""
         real, calls = getattr(owner, name), []
 
         def call(*arguments):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Of cv2.iib, what misc/python/test/test_iib.py has no room for: scripts/intree.sh runs it. A patch of opencv_contrib may have a
+"""Tests of cv2.iib that do not fit into misc/python/test/test_iib.py; scripts/intree.sh runs them. A patch of opencv_contrib may have a
 million bytes."""
 import os
 import pathlib

@@ -1,4 +1,4 @@
-"""Prints what OpenCV's generator offers of the C++ headers as cv2.iib: values of constants, methods and functions with their inputs.
+"""Prints what OpenCV's generator makes of the C++ headers for cv2.iib: constants, methods and functions with their arguments.
 
 scripts/intree.sh compares it with cv2_names.txt, and test_names.py that with the package.
 """
@@ -9,7 +9,7 @@ import cv2
 
 
 def inputs(doc):
-    """Of a call, from its first line: what must be given, and what may be and is no result."""
+    """Required arguments of a call, and optional ones that are no results, from the first line of its docstring."""
     given, results = re.match(r'\w+\((.*)\) -> (.*)', doc).groups()
     must, *may = given.split('[', 1)
     names = re.findall(r'\w+', must) + [name for name in re.findall(r'\w+', ''.join(may)) if name not in results.split(', ')]

@@ -17,7 +17,7 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 
 
 def optional(name):
-    """A module, or None where it is not installed."""
+    """A module, or None if it is not installed."""
     try:
         return importlib.import_module(name)
     except ImportError:
@@ -31,36 +31,36 @@ resource = optional('resource')  # not on Windows
 class Commands(unittest.TestCase):
 
     def check_mistake(self, pattern, *arguments):
-        """That the command reports a mistake in the command line."""
+        """Checks that the command reports a mistake in the command line."""
         self.check_error(pattern, *arguments, expected=2)
 
     def check_error(self, pattern, *arguments, expected=1):
-        """That opencv-iib ends with this status, and with one line about it behind those of progress."""
+        """Checks that opencv-iib ends with this status, and with one line about it after the progress."""
         status, _, errors = run_command(*arguments)
         self.assertEqual(status, expected)
         self.assertRegex(errors, rf'^(\w+ \d+.*\n)*{arguments[0]}: .*{pattern}.*\n$')
 
 
 class InFolder(Commands):
-    """Each test has a folder of its own."""
+    """Gives each test a folder of its own."""
 
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)  # Windows keeps files that are still mapped
 
     def write(self, name, image):
-        """The path of an image that is written here."""
+        """Writes an image and returns its path."""
         cv2.imwrite(str(self.folder / name), image)
         return str(self.folder / name)
 
     def rows(self, name):
-        """Of a table in CSV."""
+        """Rows of a CSV file."""
         with open(self.folder / name, newline='') as file:
             return list(csv.DictReader(file))
 
 
 def run_command(*arguments):
-    """Status, standard output and standard error of opencv-iib."""
+    """Runs opencv-iib. :return: status, standard output, standard error."""
     from opencv_iib.__main__ import main
     out, err = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
@@ -136,7 +136,7 @@ def brute_force(query, train, k):
 
 
 def seconds_until_interrupt(call, after):
-    """How long `call` takes if Ctrl-C is pressed after so many seconds; fails if it ends as if nothing had happened."""
+    """How long `call` takes if Ctrl-C is pressed after so many seconds; fails if it ends normally."""
     if not hasattr(signal, 'SIGALRM'):
         raise unittest.SkipTest('no signal at a chosen time on this system')
     old, begin = signal.signal(signal.SIGALRM, signal.default_int_handler), time.monotonic()
@@ -152,9 +152,9 @@ def seconds_until_interrupt(call, after):
 
 
 def steps_meanwhile(call):
-    """How often another thread runs Python in the middle half of the time that `call` takes: 0 if that holds the GIL.
+    """How often another thread runs Python in the middle half of `call`'s time: 0 if the call holds the GIL.
 
-    Not at its begin and end: the other thread may take the GIL just before or after it.
+    The first and last quarter do not count, since the other thread may get the GIL just before or after the call.
     """
     span, steps, ended = [], [], threading.Event()
 
@@ -175,7 +175,7 @@ def steps_meanwhile(call):
 
 @contextlib.contextmanager
 def files_end_at(size):
-    """As on a full disk: no file can grow to more than so many bytes."""
+    """Simulates a full disk: no file can grow beyond so many bytes."""
     if resource is None:
         raise unittest.SkipTest('no limit of the size of files on this system')
     limits, old = resource.getrlimit(resource.RLIMIT_FSIZE), signal.signal(signal.SIGXFSZ, signal.SIG_IGN)

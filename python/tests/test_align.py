@@ -47,7 +47,7 @@ class Align(Aligned):
         self.assertEqual((page.count('type="range"'), page.count('<p>')), (2, 2))
 
     def test_a_series_through_its_neighbours(self):
-        """Darker from picture to picture, and moved: the last ones have no transform with the first one."""
+        """Pictures that get darker and move: the last ones have no transform to the first one."""
         random = np.random.default_rng(4)
         scene = cv2.resize(texture(170, 130, seed=3), (680, 520), interpolation=cv2.INTER_CUBIC)
         moves = [(2 * k, k) for k in range(4)]
@@ -85,7 +85,7 @@ class Align(Aligned):
         self.assertEqual(run_command('align', paths[0], self.write('t.png', texture(300, 200, seed=9)), '--out', self.folder / 'n')[0], 3)
 
     def test_the_page_is_in_the_order_of_people(self):
-        paths = self.pictures('r.png', 'B1.png', 'B10.png', 'a.png', 'b2.png')  # as a shell orders a pattern
+        paths = self.pictures('r.png', 'B1.png', 'B10.png', 'a.png', 'b2.png')  # a shell's order of a pattern
         align(paths[0], paths[1:], str(self.folder / 'out'))
         self.assertEqual(re.findall(r'src="(\w+\.png)"\nalt', (self.folder / 'out/index.html').read_text()), ['a.png', 'B1.png', 'b2.png', 'B10.png'])
         self.assertEqual([row['file'] for row in self.rows('out/transforms.csv')], ['a.png', 'B1.png', 'b2.png', 'B10.png'])
@@ -150,7 +150,7 @@ class Align(Aligned):
                 def written(*content, real=write_whole, left=[writes]):
                     left[0] -= 1
                     if left[0] < 0:
-                        raise GeneratorExit  # nothing is written after it, as after a kill
+                        raise GeneratorExit  # as after a kill, nothing is written after it
                     real(*content)
                 with mock.patch('opencv_iib._images.write_whole', written), self.assertRaises(GeneratorExit):
                     run_command('align', *paths, *options, '--out', self.folder / 'out')
@@ -165,12 +165,12 @@ class Align(Aligned):
         self.assertEqual(run_command('align', paths[0], self.folder / 'f', '--out', self.folder / 'f/out')[0], 0)
         status, out, _ = run_command('align', paths[0], self.folder / 'f', '--out', self.folder / 'f/out')
         self.assertEqual((status, out.splitlines()[-1][-25:]), (0, '3 of 3 images are aligned'))
-        for _ in range(2):  # a pattern leaves folders out, and what was written
+        for _ in range(2):  # a pattern excludes folders and earlier results
             out = run_command('align', paths[0], self.folder / 'f/**', '--out', self.folder / 'f/out')[1]
             self.assertEqual(out.splitlines()[-1][-25:], '3 of 3 images are aligned')
 
     def test_crop_is_what_all_show(self):
-        pairs = list(self.shifted(np.uint8, lambda a: np.rot90(a, 2).astype(np.uint8), suffix='.png'))  # the second one shows the other corner
+        pairs = list(self.shifted(np.uint8, lambda a: np.rot90(a, 2).astype(np.uint8), suffix='.png'))  # the second image shows the other corner
         reference, image, (whole,), _ = pairs[0]
         cv2.imwrite(str(self.folder / 'left.png'), whole[:450, :600])
         rows = self.align(reference, image, self.folder / 'left.png', '--model', 'translation', '--crop')
@@ -181,7 +181,7 @@ class Align(Aligned):
         before = (self.folder / 'out' / rows[0]['file']).stat().st_ino
         self.align(reference, image, self.folder / 'left.png', '--model', 'translation', '--crop', calls=0)
         self.assertEqual((self.folder / 'out' / rows[0]['file']).stat().st_ino, before)
-        self.align(reference, image, '--model', 'translation', '--crop', calls=0)  # all show more now
+        self.align(reference, image, '--model', 'translation', '--crop', calls=0)  # all images show more now
         self.assertGreater(cv2.imread(str(self.folder / 'out' / rows[0]['file'])).shape[1], 600)
 
     def test_masks_and_reduced_images(self):
@@ -189,7 +189,7 @@ class Align(Aligned):
         other, masks = picture[20:, 30:].copy(), self.folder / 'masks'
         banner = cv2.resize(texture(100, 70, seed=8), (400, 280), interpolation=cv2.INTER_CUBIC)
         first = picture.copy()
-        for image in (first, other):  # which stays where it is
+        for image in (first, other):  # does not move
             image[:280, :400] = banner
         paths = [self.write(name, image) for name, image in (('r.png', first), ('i.png', other))]
         masks.mkdir()
@@ -201,7 +201,7 @@ class Align(Aligned):
         for options in ((), ('--max-size', '320')):
             row, = self.align(*paths, '--model', 'translation', '--mask', masks, *options)
             np.testing.assert_allclose([float(row['t13']), float(row['t23'])], [30, 20], atol=.3)
-        found, = align(paths[0], paths[1:], self.folder / 'out')  # by the larger part
+        found, = align(paths[0], paths[1:], self.folder / 'out')  # the transform of the larger part
         np.testing.assert_allclose(found.transform[2:6:3], [30, 20], atol=.3)
         self.assertIn('moved otherwise', str(found))
         cv2.imwrite(str(masks / 'r.png.png'), mask)

@@ -1,4 +1,4 @@
-"""What the command align keeps of files: depths, channels, pages, pixels without data, and places on the Earth."""
+"""The command align keeps depths, channels, pages, pixels without data, and places on the Earth."""
 import json
 import unittest
 
@@ -17,7 +17,7 @@ class Files(Aligned):
                  lambda a: (a / 255).astype(np.float32), np.float32)
         rows = [self.check_shifted(pair)[0] for pair in self.shifted(*kinds)]
         transforms = np.array([[float(row[f't{r}{c}']) for r in '123' for c in '123'] for row in rows])
-        np.testing.assert_allclose(transforms, transforms[:1].repeat(6, 0), atol=.001)  # a part has less than the range of all
+        np.testing.assert_allclose(transforms, transforms[:1].repeat(6, 0), atol=.001)  # a part has a smaller range than the whole
         for pair in self.shifted(*kinds[:4], suffix='.png'):
             self.assertEqual(self.check_shifted(pair)[0]['file'][-4:], '.png')
 
@@ -63,7 +63,7 @@ class Files(Aligned):
         np.testing.assert_allclose(shown.mean(), (610 * 460 - 30 * 50) / (640 * 480), atol=.02)
         np.testing.assert_array_equal(page[shown][:, [0, 2]].T, [[0], [255]] * np.ones(shown.sum(), int))
         pair, = self.shifted(lambda a: np.dstack([a, a, a]).astype(np.int16))
-        pair[3][0][100:130, 100:150, 1] = -9999  # one channel without data, whose others stay
+        pair[3][0][100:130, 100:150, 1] = -9999  # one channel without data; the others stay
         write_picture(pair[1], pair[3][0], no_data='-9999')
         row, = self.align(*pair[:2], '--model', 'translation', '--interpolation', 'cubic')
         page = decode_first((self.folder / 'out' / row['file']).read_bytes())
@@ -90,7 +90,7 @@ class Files(Aligned):
             status, _, errors = run_command('align', *pair[:2], '--out', self.folder / 'out', '--model', 'translation', *crop)
             self.assertEqual((status, errors.count('i0.tif: 1 of its pages are left out')), (0, 1))
 
-    def test_no_data_that_no_pixel_can_have_tells_nothing(self):
+    def test_no_data_values_that_no_pixel_can_have_are_ignored(self):
         for dtype, text in ((np.uint8, '-9999'), (np.uint8, 'nan'), (np.float32, '1e39'), (np.uint16, 'none')):
             pair, = self.shifted(dtype)
             reference, image, _, (part,) = pair
@@ -122,7 +122,7 @@ class Files(Aligned):
         row, = self.align(reference, image, '--model', 'translation', '--format', 'png')
         self.assertEqual(row['file'], 'i0.png')
         data = reference.read_bytes()
-        wrong = data.replace(bytes.fromhex('af87 0300'), bytes.fromhex('af87 0c00'))  # numbers of another type
+        wrong = data.replace(bytes.fromhex('af87 0300'), bytes.fromhex('af87 0c00'))  # of another type
         self.assertEqual((len(decode_all(data).geo), decode_all(wrong).geo), (2, ()))
         write_picture(image, part, geo=[(33550, 12, (np.inf, np.nan, 0))], no_data='inf')
         self.assertEqual(decode_all(image.read_bytes()).geo, ())

@@ -1,4 +1,4 @@
-"""Databases for COLMAP: what is written, interruptions, workers, mistakes."""
+"""Databases for COLMAP: content, interruptions, workers, mistakes."""
 import concurrent.futures
 import os
 import shutil
@@ -103,7 +103,7 @@ class Searches(Collection):
 
     def test_images_from_near_and_far_and_rotated_are_joined(self):
         tables = [f'SELECT * FROM {table} ORDER BY 1' for table in ('keypoints', 'matches', 'two_view_geometries')]
-        self.assertEqual(self.build(search=False)['verified pairs'], 3)  # of near.png by chance of few points
+        self.assertEqual(self.build(search=False)['verified pairs'], 3)  # few points of near.png match by chance
         points, *before = map(self.query, tables)
         self.assertGreaterEqual(self.build(force=True)['verified pairs'], 5)
         keypoints = {row[0]: np.frombuffer(row[3], np.float32).reshape(row[1:3]) for row in self.query(tables[0])}
@@ -159,7 +159,7 @@ class Runs(Collection):
         self.assertEqual(self.query('SELECT COUNT(*) FROM images'), [(3,)])
 
     def grow(self, described, **options):
-        """Builds again; which images are described, and which pairs are matched."""
+        """Builds again. :return: images that are described, and pairs that are matched."""
         seen, pairs = [], []
         describe, match = pipeline.describe_image, pipeline.opencv_iib.match
         with mock.patch.object(pipeline, 'describe_image', lambda folder, options, name: seen.append(name) or describe(folder, options, name)), \
@@ -171,7 +171,7 @@ class Runs(Collection):
     def test_a_finished_database_grows(self):
         self.build()
         old = {table: self.query(f'SELECT * FROM {table}') for table in ('cameras', 'images', 'keypoints', 'matches', 'two_view_geometries')}
-        with closing(sqlite3.connect(self.database)) as connection:  # as a newer COLMAP does when it opens it
+        with closing(sqlite3.connect(self.database)) as connection:  # a newer COLMAP does so when it opens the file
             connection.execute('ALTER TABLE images ADD COLUMN frame INTEGER')
             connection.execute('PRAGMA user_version=4000')
         self.assertEqual(self.grow([])[1], 0)
@@ -195,7 +195,7 @@ class Runs(Collection):
         self.build()
         before, points = self.query(names), self.query('SELECT * FROM keypoints')
         for name in ('a.png', 'more/c.png'):
-            os.utime(self.images / name, (1, 1))  # as cp and rsync do
+            os.utime(self.images / name, (1, 1))  # like cp and rsync
         moved = self.images.rename(self.folder / 'moved')
         self.images = moved
         self.assertEqual(self.grow([])[1], 0)
@@ -249,7 +249,7 @@ class Runs(Collection):
         self.assertEqual(described, [])
         self.assertLess(len(matched), 3)
         self.assertEqual((counts['images'], counts['pairs']), (3, 3))
-        with self.ended_in(_core.WholeFile, 'commit'):  # the file is complete but for its name
+        with self.ended_in(_core.WholeFile, 'commit'):  # the file is complete, but not renamed yet
             self.build(force=True)
         self.assertEqual(self.build(force=True), counts)
         self.assertEqual(self.files(), ['database.db', 'images'])
@@ -272,7 +272,7 @@ class Runs(Collection):
     @unittest.skipIf(pycolmap is None, 'no pycolmap')
     def test_the_newest_colmap_reads_it_and_an_interrupted_run_goes_on_after_it(self):
         self.interrupt()
-        pycolmap.Database.open(f'{self.database}.partial').close()  # gives it its own schema
+        pycolmap.Database.open(f'{self.database}.partial').close()  # upgrades it to its own schema
         counts = self.build()
         self.assertGreater(self.query('PRAGMA user_version')[0][0], 3800)
         with pycolmap.Database.open(self.database) as database:
@@ -398,5 +398,5 @@ class Mistakes(Collection):
                           ('demo', images / 'a.png', images / 'b.png', '--out', folder / 'x.png')):
             status, out, _ = run_command(*arguments)
             self.assertEqual(status, 0)
-            out.encode()  # as a terminal does
+            out.encode()  # like a terminal
         self.assertTrue(os.path.getsize(folder / 'x.png'))

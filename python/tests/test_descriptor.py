@@ -10,7 +10,7 @@ import opencv_iib
 from opencv_iib import IIB
 from support import InFolder, cv2, fnv1a, grid, scatter, texture
 
-#: Arguments, and hashes of the bits with BORDER_CLAMP and BORDER_REFLECT: those of modules/iib/test/descriptor/test_descriptor_golden.cpp.
+#: Arguments, and hashes of the bits with BORDER_CLAMP and BORDER_REFLECT, as in modules/iib/test/descriptor/test_descriptor_golden.cpp.
 GOLDEN = {
     'default': ({}, 0x7c4943b59e478a06, 0x2e989fe2274d8bf2),
     'mapping max': ({'mapping': IIB.MAPPING_MAX}, 0x40d0d530ef404756, 0x6f1e2f008211b314),
@@ -210,7 +210,7 @@ class Objects(InFolder):
             with self.assertRaisesRegex(opencv_iib.error, message):
                 call(nowhere)
         names = ['iib.xml', 'iib.json', os.fsdecode(b'\xe9.yml'), '\u65e5\u672c.yml']
-        if os.name != 'nt':  # cv::FileStorage, which takes names of the code page alone there, ends a name before a '?'
+        if os.name != 'nt':  # on Windows, cv::FileStorage accepts only names in the code page, and ends a name before a '?'
             names.append('a?.yml')
         for name in names:
             again = IIB.create()
@@ -222,7 +222,7 @@ class Objects(InFolder):
         again.read(self.folder / 'packed')
         self.expect_same(iib, again)
         with self.assertRaisesRegex(opencv_iib.error, '.*/packed holds no parameters'):
-            (self.folder / 'packed').write_bytes(path.read_bytes().partition(b'pping')[0])  # within a line: YAML may end after one
+            (self.folder / 'packed').write_bytes(path.read_bytes().partition(b'pping')[0])  # within a line, since YAML may end after a line
             again.read(self.folder / 'packed')
         self.assertEqual(len(os.listdir(self.folder)), 2 + len(names))
         self.expect_same(iib, other)

@@ -13,7 +13,7 @@ from support import cv2, texture
 
 
 class Watching:
-    """A detector that keeps what it was shown, and finds one keypoint."""
+    """A detector that stores its image and mask, and finds one keypoint."""
 
     def getDefaultName(self):
         return 'Feature2D.SIFT'
@@ -63,7 +63,7 @@ class Normalized(unittest.TestCase):
         self.assertEqual([k.pt for k in normalized.detect(image // 4)], [(20, 30)])
         seen = detector.image
         self.assertEqual((seen.shape, seen.dtype), (image.shape, np.uint8))
-        self.assertLess(abs(seen.mean() - 128), 4)  # evened out
+        self.assertLess(abs(seen.mean() - 128), 4)  # normalized
         normalized.setSigma(9)
         mask = np.zeros((120, 160), np.uint8)
         mask[3, 5] = 255
@@ -95,7 +95,7 @@ class Normalized(unittest.TestCase):
                 finder.detect(image, mask)
                 np.testing.assert_array_equal(detector.mask, 255 * (mask > 0))
         self.assertEqual(ones.max(), 1)
-        iib = IIB.create()  # finds by the ORB inside
+        iib = IIB.create()  # detects by the inner ORB
         self.assertEqual(len(iib.detect(image, ones)), len(iib.detect(image, 255 * ones)))
         self.assertEqual(len(iib.detect(image, np.ones_like(image))), len(iib.detect(image)))
 
@@ -186,7 +186,7 @@ class MatchRotated(unittest.TestCase):
         for given, described, angle in zip(self.rows, (first, second), (-1, rotation)):
             np.testing.assert_array_equal(described[:, :3], given)
             np.testing.assert_array_equal(described[:, 3], np.float32(angle))
-        # the same by hand
+        # the same steps by hand
         codes = [self.extractor.compute(image, rows)[1] for image, rows in zip(self.images, (first, second))]
         by_hand = self.matcher.match(*codes)
         self.assertEqual([(m.queryIdx, m.trainIdx, m.distance) for m in by_hand], [tuple(m) for m in matches.tolist()])

@@ -1,4 +1,4 @@
-"""Every program in Python of every page runs as it stands there, with this package."""
+"""Every Python program of every page runs unchanged, with this package."""
 import importlib.util
 import re
 import subprocess
@@ -12,8 +12,8 @@ from support import REPOSITORY, InFolder, cv2, texture
 
 PAGES = [REPOSITORY / 'README.md', *sorted((REPOSITORY / 'doc').glob('*.md')), *sorted(REPOSITORY.glob('modules/*/*.md')),
          *sorted(REPOSITORY.glob('modules/*/tutorials/*.markdown'))]
-# In place of OpenCV 5's networks, whose files are not here: classes with the names and arguments of 5.0.0, as far as the guide uses them,
-# so that it can use no others.
+# The files of OpenCV 5's networks are not here. These classes have the names and arguments of 5.0.0 that the guide uses,
+# and no others.
 NETWORKS = '''
 images = [day, night]
 K1 = K2 = np.float64([[400, 0, 320], [0, 400, 240], [0, 0, 1]])
@@ -37,8 +37,8 @@ for one in ALIKED, LightGlueMatcher:
     assert {name for name in vars(one) if name[0] != '_'} <= set(dir(getattr(cv2, one.__name__, one)))
     setattr(cv2, one.__name__, one)
 '''
-# Of each page, for each of its programs: arguments and what it prints; or of a piece of one: what stands before it, what after
-# it, and what that prints; or where else it is run.
+# For each program of each page: its arguments and what it prints. For a fragment: code before it, code after it, and what both
+# print. For a program that another test runs: the test.
 RUNS = {
     'README.md': [('day.png night.png', r'^\d{3,} matches\n$')],
     'python.md': [('image_a, image_b = day, night', 'print(len(pairs), matched_a.shape == matched_b.shape)', r'^\d{3} True\n'),

@@ -42,7 +42,7 @@ class Examples(unittest.TestCase):
         matches, error = self.run_example('align.py', r'(\d+) matches agree; .* by ([\d.]+) pixels')
         self.assertGreater(matches, 200)
         self.assertLess(error, 1.25)
-        self.assertGreater(error, .25)  # the corners are off by .52, .32, .04 and .48
+        self.assertGreater(error, .25)  # errors of the corners: .52, .32, .04 and .48
 
     def test_poses(self):
         number = r' *([-\d.]+) *'

@@ -1,4 +1,4 @@
-"""What is written and where: nothing of the user's is replaced or removed."""
+"""Outputs of commands: no file of the user is replaced or removed."""
 import os
 import unittest
 from pathlib import Path
@@ -29,7 +29,7 @@ class Files(InFolder):
             self.assertEqual((self.folder / name).read_text(), 'precious', name)
 
     def results(self, *names, out='out', command='measure'):
-        """Writes results called so."""
+        """Writes results under these names."""
         with Results(str(self.folder / out), command) as results:
             for name in names:
                 Path(results.place(name)).write_text('result')
@@ -75,7 +75,7 @@ class Files(InFolder):
             with self.assertRaises(KeyboardInterrupt), Results(str(self.folder / out), 'measure'):
                 raise KeyboardInterrupt
         self.assertEqual((self.names(), (self.folder / 'none').exists()), ([f'out/{RECORD}', 'out/a', 'out/sub/d'], False))
-        (self.folder / 'link').symlink_to('disk/new')  # nothing is there yet
+        (self.folder / 'link').symlink_to('disk/new')  # the folder is empty
         (self.folder / 'disk').mkdir()
         for _ in range(2):
             self.results('a', out='link')

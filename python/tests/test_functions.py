@@ -8,7 +8,7 @@ from support import texture
 
 
 class Tensor:
-    """What torch and kornia hand over: no array, but DLPack and the array interface."""
+    """Like tensors of torch and kornia: no array, but with DLPack and the array interface."""
 
     def __init__(self, array):
         self.array = array
@@ -83,7 +83,7 @@ class Functions(unittest.TestCase):
             iib = opencv_iib.IIB()
             np.testing.assert_array_equal(iib.compute(self.image, tensor(keypoints))[1], iib.compute(self.image, keypoints)[1])
         with self.assertRaises(opencv_iib.error):
-            opencv_iib.detect_and_describe(planes)  # whose order numpy does not tell
+            opencv_iib.detect_and_describe(planes)  # channels come first, which cannot be known of a numpy array
         if len(tensors) > 1:
             with self.assertRaisesRegex((RuntimeError, TypeError, opencv_iib.error), 'grad'):
                 opencv_iib.detect_and_describe(torch.from_numpy(planes).requires_grad_())

@@ -1,4 +1,4 @@
-"""hloc: the files that opencv-iib hloc writes, and the extractor among the examples."""
+"""The files that opencv-iib hloc writes, and the example of an extractor for hloc."""
 import importlib.util
 import shutil
 import sys
@@ -26,7 +26,7 @@ class Tensor(np.ndarray):
 
 
 def extractor():
-    """The example's class, with as much of torch and hloc as it uses."""
+    """The example's class, with stand-ins for the parts of torch and hloc that it uses."""
     torch, base = types.ModuleType('torch'), types.ModuleType('hloc.utils.base_model')
     torch.from_numpy = lambda array: array.view(Tensor)
     base.BaseModel = object
@@ -41,7 +41,7 @@ def extractor():
 
 
 def nearest(similarity, ratio):
-    """What hloc's nearest_neighbor finds in one direction."""
+    """The matches of hloc's nearest_neighbor in one direction."""
     best = np.argsort(-similarity, axis=1, kind='stable')[:, :2]
     first, second = (2 * (1 - np.take_along_axis(similarity, best, 1))).T
     return np.where(first <= ratio ** 2 * second, best[:, 0], -1)

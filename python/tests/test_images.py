@@ -1,4 +1,4 @@
-"""What is read of image files, and what is found in them."""
+"""Reading image files and their EXIF data."""
 import contextlib
 import io
 import os
@@ -23,7 +23,7 @@ from opencv_iib.features import DETECTORS, Features, to_colmap
 from support import cv2, optional, texture
 
 tifffile = optional('tifffile')
-PLAIN = 259, 1  # TIFF's compression: cv2's own loses some of floats
+PLAIN = 259, 1  # TIFF's compression; cv2's default is lossy for floats
 
 
 def encoded(image, suffix, *options):
@@ -90,7 +90,7 @@ class Files(Collection):
         for values in ((1e30, np.inf), (3e38, -3e38), (-np.inf, np.nan)):
             wild = grey.astype(np.float32)
             wild[5, 5:7] = values
-            wild.view(np.uint32)[5, 5] |= 0x7F800001 if np.isnan(values).any() else 0  # NaN that signals
+            wild.view(np.uint32)[5, 5] |= 0x7F800001 if np.isnan(values).any() else 0  # a signalling NaN
             file.write_bytes(encoded(wild, '.tif'))
             wide = np.where(grey < 99, np.float32(values[0]), np.float32(values[1]))
             with warnings.catch_warnings():
@@ -109,11 +109,11 @@ class Files(Collection):
     @unittest.skipIf(tifffile is None, 'no tifffile')
     def test_pages_of_tiff(self):
         for pages in ([texture(60, 40, seed=seed) for seed in (1, 2, 3)], [np.dstack([texture(60, 40, np.uint16, seed)] * 3) for seed in (4, 5)]):
-            for largest in (2**32, -1):  # so that places have 32 bits, or 64
+            for largest in (2**32, -1):  # offsets have 32 bits, or 64
                 with mock.patch('opencv_iib._tiff.LARGEST', largest):
                     data = tiff_bytes([*pages, texture(20, 10)])  # of another size
                 self.assertEqual(data[:4], b'II*\0' if largest > 0 else b'II+\0')
-                for broken in (None, tifffile.TiffPage):  # where cv2 has to read what tifffile does not
+                for broken in (None, tifffile.TiffPage):  # cv2 reads compressions that tifffile does not
                     with mock.patch('builtins.open', side_effect=AssertionError), contextlib.ExitStack() as stack:
                         if broken:
                             stack.enter_context(mock.patch.object(broken, 'asarray', side_effect=ValueError))
@@ -157,7 +157,7 @@ class Files(Collection):
                 with self.assertRaisesRegex(ValueError, r'pip install opencv-iib\[tiff\]'):
                     decode(data)
 
-    def test_tiffs_that_are_stored_turned_are_read_as_they_are_stored(self):  # which cv2 turns in any case
+    def test_tiffs_that_are_stored_turned_are_read_as_they_are_stored(self):  # cv2 always rotates these
         image = np.arange(600, dtype=np.uint16).reshape(20, 30)
         entries = [(256, 3, 30), (257, 3, 20), (258, 3, 16), (259, 3, 1), (262, 3, 1), (273, 4, 8), (277, 3, 1), (278, 3, 20), (279, 4, 1200)]
         for orientation in range(1, 9):
@@ -189,7 +189,7 @@ class Files(Collection):
         for order, head in (('<', b'II+\0'), ('>', b'MM\0+')):
             data = head + struct.pack(order + 'HHQQHHQH6xQ', 8, 0, 16, 1, 0x112, 3, 1, 6, 0)
             self.assertEqual(exif_orientation(data), 6)
-            for place in (8, 16, 24, 28):  # of the directory, its length, and entries that lead nowhere
+            for place in (8, 16, 24, 28):  # the directory's offset, its length, and entries that point beyond the file
                 wild = data[:place] + b'\xff' * 8 + data[place + 8:]
                 self.assertEqual((exif_orientation(wild), exif_focal_length(wild, 60, 40)), (1, None))
             self.assertEqual(exif_orientation(data[:26]), 1)
@@ -203,9 +203,9 @@ class Files(Collection):
                 exif = struct.pack('<4sIHHHIIIHHHIIHHIIId', b'II*\0', 8, 1, 0x8769, 4, 1, 26, 0, 2, tag, 12, 1, 56, 0xA20E, 4, 1, 9, 0, value)
                 self.assertIsNone(exif_focal_length(exif, 60, 40))
 
-    def test_exif_of_wrong_types_tells_nothing(self):
+    def test_exif_of_wrong_types_is_ignored(self):
         for tag in (0x112, 0x8769, 0x8825):
-            for text in (b'x\0\0\0', bytes(4)):  # a text, where numbers belong
+            for text in (b'x\0\0\0', bytes(4)):  # a text instead of numbers
                 data = struct.pack('<4sIHHHI', b'II*\0', 8, 1, tag, 2, 4) + text + bytes(4)
                 with self.subTest(tag=tag), tempfile.TemporaryDirectory() as folder:
                     self.assertEqual((exif_orientation(data), exif_focal_length(data, 60, 40)), (1, None))
@@ -221,7 +221,7 @@ class Found(Collection):
             with self.subTest(name):
                 try:
                     features = Features(FeatureOptions(name, 100))
-                except ValueError as e:  # OpenCV 5 has three of them no more
+                except ValueError as e:  # OpenCV 5 no longer has three of them
                     self.assertIn(name, ('AKAZE', 'BRISK', 'KAZE'))
                     self.assertRegex(str(e), f'^cv2 5.* has no {name}')
                     continue

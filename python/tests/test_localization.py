@@ -26,10 +26,10 @@ class Localization(OnWall):
 
     def test_another_light_is_localized_and_written(self):
         out = self.path('out')
-        for _ in range(2):  # the second replaces the first
+        for _ in range(2):  # the second result replaces the first
             self.assertEqual(self.localize(out, '--camera', CAMERA, '--pictures')[0], 0)
         self.assertEqual(sorted(os.listdir(out)), [RECORD, 'cameras.bin', 'frames.csv', 'images.bin', 'matches', 'points3D.bin', 'trajectory.txt'])
-        for name in self.truth:  # a/b and a-b stay apart
+        for name in self.truth:  # a/b and a-b get different names
             self.assertEqual(cv2.imread(os.path.join(out, 'matches', name + '.png')).shape, (HEIGHT, WIDTH, 3))
         self.assertEqual(Path(out, 'trajectory.txt').read_text().splitlines()[0], '# name tx ty tz qx qy qz qw')
         found = trajectory(out)
@@ -124,7 +124,7 @@ class Localization(OnWall):
                 np.testing.assert_allclose(near.cam_from_world, location.cam_from_world, atol=.02)
         status, errors = self.localize(out, '--camera', 'SIMPLE_PINHOLE,240,320,300,120,160', images=folder)
         self.assertEqual((status, sorted(trajectory(out))), (4, ['6', '8']))
-        for more in ((), ('--no-exif',)):  # only EXIF tells of a mirrored image
+        for more in ((), ('--no-exif',)):  # only EXIF says that an image is mirrored
             for command in (('localize', '--out', self.path('l')), ('update', '--out', self.path('u'))):
                 errors = run_command(*command, '--map', self.map, '--images', folder, *more)[2]
                 for orientation in MIRRORED:
@@ -140,7 +140,7 @@ class Localization(OnWall):
         location, nothing = (localizer.localize(image, CAMERA) for image in (self.grey(), np.zeros((HEIGHT, WIDTH), np.uint8)))
         times = [8_500_000_000 + 500_000_000 * i for i in range(6)]
         own = location.cam_from_world
-        readings = np.zeros((1001, 7))  # of a camera that stands still
+        readings = np.zeros((1001, 7))  # the camera stands still
         readings[:, 0], readings[:, 4:] = 8e9 + 5e6 * np.arange(1001), own[:3, :3] @ [0, -9.81, 0]
         locations = [location, nothing, *[location] * 4]
         smoothed = smooth_poses(np.array(times), locations, readings)
@@ -267,7 +267,7 @@ class Localization(OnWall):
             os.makedirs(foreign)
             for name in set(made) - {RECORD}:
                 if command != 'map' and os.path.isfile(os.path.join(out, name)):  # --force replaces a map
-                    Path(foreign, name).write_bytes(b'precious' * 9999)  # which the command would write
+                    Path(foreign, name).write_bytes(b'precious' * 9999)  # the command would write it
                     self.check_error('holds ' + name, command, *arguments, '--out', foreign)
                     self.assertEqual(Path(foreign, name).read_bytes(), b'precious' * 9999)
                     os.unlink(os.path.join(foreign, name))

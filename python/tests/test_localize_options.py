@@ -1,4 +1,4 @@
-"""What the command localize does beyond a folder of images: an IMU, large images, names from a pipe."""
+"""Options of the command localize: an IMU, large images, names from a pipe."""
 import csv
 import io
 import os
@@ -54,7 +54,7 @@ class Imu(Options):
         return self.folder / 'imu.csv'
 
     def test_poses_of_images_that_tell_nothing(self):
-        for n in range(6):  # 8.5 to 13.5 seconds, which sort otherwise as text; the camera stands still
+        for n in range(6):  # 8.5 to 13.5 seconds; as texts they sort differently. The camera stands still
             self.image(f'{8 + n}.500000.png', np.full((HEIGHT, WIDTH), 7, np.uint8) if n == 1 else None)
         felt = pose(*PLACE)[:3, :3] @ np.array([0, -9.81, 0])
         imu = self.write(''.join(f'{time},0,0,0,{felt[0]:.9f},{felt[1]:.9f},{felt[2]:.9f}\n'
@@ -126,7 +126,7 @@ class LargeImages(Options):
             self.check(found[size])
             picture = cv2.imread(str(self.out / 'matches/a.png')).astype(int)
             self.assertEqual(picture.shape[1::-1], SIZE)
-            red[size] = (picture[..., 2] - picture[..., :2].max(axis=2)).clip(0).sum()  # from where points are seen to where the pose has them
+            red[size] = (picture[..., 2] - picture[..., :2].max(axis=2)).clip(0).sum()  # from the seen pixels to the projected points
         np.testing.assert_array_equal(found[0], found[320])
         self.assertFalse(np.array_equal(found[0], found[250]))
         self.assertLess(red[250], 3 * red[0])

@@ -38,7 +38,7 @@ class MappedIndexTest(InFolder):
         self.assertEqual(index.search(self.queries[:0], 3)[0].shape, (0, 3))
         with self.assertRaisesRegex(error, r'are 300 descriptors to find: ask for at most 3355443 for each of 20 queries'):
             index.search(self.queries, 3355444)
-        many = np.zeros((4000, self.queries.shape[1]), np.uint8)  # whose parts would each be few enough
+        many = np.zeros((4000, self.queries.shape[1]), np.uint8)  # each part of the queries alone would fit
         matcher = HierarchicalMatcher()
         matcher.add(self.codes)
         for search in (index.search, lambda queries, k: matcher.knnMatchArrays(queries, k=k), lambda queries, k: matcher.knnMatchArrays(queries, self.codes, k)):

@@ -53,7 +53,7 @@ class Maps(OnWall):
         Path(images, 'query.png').write_bytes(png(stored(self.grey(), 6), 6))
         for name in turns:
             os.unlink(os.path.join(images, name))
-        self.assertEqual(self.localize(self.path('out'), map=out, images=images)[0], 0)  # by the map's camera, turned
+        self.assertEqual(self.localize(self.path('out'), map=out, images=images)[0], 0)  # of the map's camera, rotated
 
     def test_masks(self):
         masks, out, found = self.path('masks'), self.path('map'), self.path('out')
@@ -119,12 +119,12 @@ class Maps(OnWall):
         status, _, errors = run_command('map', '--model', self.model, '--images', self.images, '--out', made, '--orb-and-akaze')
         self.assertEqual(status, 0, errors)
         self.check(Localizer(made).localize(photograph(wall(3), pose(*self.truth['c'])), CAMERA))
-        self.assertRegex(Localizer(made).localize(self.grey(), CAMERA).reason, 'too few')  # recommended points would be seen
+        self.assertRegex(Localizer(made).localize(self.grey(), CAMERA).reason, 'too few')  # recommended points would be found
 
     def test_nothing_is_said_with_quiet(self):
         arguments = 'map', '--model', self.model, '--images', self.images, '--points', '300', '--out', self.path('map')
         os.makedirs(arguments[-1])
-        Path(arguments[-1], '.DS_Store').touch()  # which is no map
+        Path(arguments[-1], '.DS_Store').touch()  # not a map
         for more in ((), ('--force',)):
             self.assertEqual(run_command(*arguments, '--quiet', *more), (0, '', ''))
 

@@ -56,7 +56,7 @@ class Match(InFolder):
         np.testing.assert_allclose(towards, [1, 0, 0], atol=.02)
         np.testing.assert_allclose(turned, [0, 3, 0], atol=.1)
         self.assertEqual(cv2.imread(str(self.folder / 'm.png')).shape, (44 + 480, 2 * 640, 3))
-        # a camera of twice the focal length and no distortion gives another pose
+        # twice the focal length without distortion gives another pose
         wrong = match_images(a, b, cameras=['PINHOLE,480,360,800,800,240,180'])
         turn = np.degrees(np.arccos((np.trace(wrong.pose.R) - 1) / 2))
         self.assertGreater(abs(turn - 3), .5)
@@ -72,7 +72,7 @@ class Match(InFolder):
         def shift(points, given):
             points[given // 2:] += random.uniform(5, 50, 2).astype(np.float32)
 
-        def blur(points, given):  # the more exact one has fewer that agree
+        def blur(points, given):  # the more exact pose has fewer inliers
             points += random.normal(0, 1.5, points.shape).astype(np.float32)
 
         for spoil, misled in itertools.product((shift, blur), range(2)):
@@ -132,7 +132,7 @@ class Match(InFolder):
         status, out, _ = run_command('demo', a, b, '--out', self.folder / 'd.png')
         self.assertRegex(out, r'^IIB \d+ of \d+ consistent, scale 0.40, rotated by 90 degrees, SIFT')
         turned = self.write('c.png', cv2.rotate(picture, cv2.ROTATE_90_CLOCKWISE))
-        of_orb = match_images(a, turned, options=FeatureOptions(points=1000, detector='ORB'))  # which views are not made of
+        of_orb = match_images(a, turned, options=FeatureOptions(points=1000, detector='ORB'))  # matchViews does not make views of it
         self.assertTrue(of_orb.found)
         self.assertGreaterEqual(of_orb.bits.min(), 0)
         self.assertAlmostEqual(of_orb.rotation, 90, delta=1)

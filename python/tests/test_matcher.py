@@ -58,7 +58,7 @@ class MatcherTest(InFolder):
             self.assertAlmostEqual(other.getMaxRatio(), .92, 6)
         matches = matcher.match(self.query, self.train)
         self.assertEqual([(m.queryIdx, m.trainIdx) for m in matches], [(i, i + 10) for i in range(50)])
-        self.train[0] = self.train[10]  # as near as the right one
+        self.train[0] = self.train[10]  # as near as the right code
         rows = matcher.knnMatch(self.query, self.train, 2)
         self.assertEqual([len(row) > 0 for row in rows], [False] + [True] * 49)
 
@@ -143,7 +143,7 @@ class MatcherTest(InFolder):
         self.assertIsNotNone(cv2.drawMatches(image, points, image, points, ours, None))
 
     def test_many_queries(self):
-        """They are searched by 512."""
+        """512 queries are searched at a time."""
         rng = np.random.default_rng(5)
         queries, train = rng.integers(0, 256, (1100, 4), np.uint8), rng.integers(0, 256, (60, 4), np.uint8)
         indices, distances = brute_force(queries, train, 3)

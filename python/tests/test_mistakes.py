@@ -84,7 +84,7 @@ class Texts(InFolder):
                 for given in ((flat, 9, None), (image, 9, flat)):
                     if flat.ndim == 1 and flat.size:
                         self.expect(opencv_iib.error, '2 or 3 dimensions', lambda: opencv_iib.detect_and_describe(*given, orientation))
-                    else:  # no image, and no mask, as OpenCV's classes have it
+                    else:  # None for an image and a mask, like OpenCV's classes
                         opencv_iib.detect_and_describe(*given, orientation)
 
     def test_no_shape_ends_in_a_bare_error(self):

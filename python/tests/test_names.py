@@ -1,4 +1,4 @@
-"""Names and what they stand for."""
+"""Names of classes, functions and constants."""
 import importlib.metadata
 import inspect
 import operator
@@ -39,7 +39,7 @@ class Names(unittest.TestCase):
             self.assertIs(getattr(iib, 'CHANNELS_DEFAULT' if name == 'DEFAULT' else 'CHANNEL_' + name), member)
 
     def test_getters_return_them_and_there_are_no_others(self):
-        iib, matcher = opencv_iib.IIB(channels=59, granularity=5), opencv_iib.HierarchicalMatcher([8, 8])  # for which every value is valid
+        iib, matcher = opencv_iib.IIB(channels=59, granularity=5), opencv_iib.HierarchicalMatcher([8, 8])  # every value is valid
         for enum, use, get in ((opencv_iib.Mapping, iib.setMapping, iib.getMapping), (opencv_iib.Border, iib.setBorder, iib.getBorder),
                                (opencv_iib.Mode, matcher.setMode, matcher.getMode), (opencv_iib.Orientation, iib.setOrientation, iib.getOrientation),
                                (opencv_iib.Preset, lambda preset: iib.createPreset(preset, 2), None)):

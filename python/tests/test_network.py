@@ -16,7 +16,7 @@ import numpy as np
 from opencv_iib import shards
 from support import InFolder, brute_force, cv2, texture
 
-NAMESPACE = os.environ.get('IIB_NETWORK')  # set in a network namespace that is the tests' own
+NAMESPACE = os.environ.get('IIB_NETWORK')  # set inside the tests' network namespace
 
 if NAMESPACE:
     import dask
@@ -29,7 +29,7 @@ def ip(*arguments):
 
 @unittest.skipUnless(NAMESPACE, 'no network namespace: scripts/helpers/servers_test.sh makes one')
 class NetworkTest(InFolder):
-    """A scheduler here and three workers, all with a cable to the same switch."""
+    """A scheduler here and three workers, each with a cable to one switch."""
 
     WORKERS = ('one', 'two', 'three')
 
@@ -75,7 +75,7 @@ class NetworkTest(InFolder):
         return {worker['name'] for worker in self.client.scheduler_info(n_workers=-1)['workers'].values()}
 
     def expect_left(self, *names):
-        """That the scheduler knows these workers alone, while the others still run."""
+        """Checks that the scheduler knows only these workers, while the others still run."""
         for _ in range(100):
             if self.names() == set(names):
                 break
@@ -90,7 +90,7 @@ class NetworkTest(InFolder):
         expected = [array.tobytes() for array in shards.search(folder, queries)]
         np.testing.assert_array_equal(shards.search(folder, queries)[0], brute_force(queries, codes, 5)[0])
         found = []
-        self.processes['one'].send_signal(signal.SIGSTOP)  # so that it has its shards when the cable is cut
+        self.processes['one'].send_signal(signal.SIGSTOP)  # it must have its shards when the cable is cut
         thread = threading.Thread(target=lambda: found.append(shards.search(folder, queries, 5, self.client)))
         thread.start()
         thread.join(1)
@@ -101,7 +101,7 @@ class NetworkTest(InFolder):
         self.assertFalse(thread.is_alive())
         self.assertEqual([array.tobytes() for array in found[0]], expected)
         self.expect_left('two', 'three')
-        ip('link', 'set', 'two', 'down')  # with nothing to do
+        ip('link', 'set', 'two', 'down')  # idle
         self.assertEqual([array.tobytes() for array in shards.search(folder, queries, 5, self.client)], expected)
         self.expect_left('three')
 
@@ -125,7 +125,7 @@ class NetworkTest(InFolder):
             return rows
 
         def cutting(method, name, count):
-            """The method, which cuts a cable at its call of that number."""
+            """Wraps a method: its call with this number cuts a cable."""
             original, calls = getattr(pipeline.Database, method), []
 
             def call(*arguments):

@@ -1,4 +1,4 @@
-"""Which pairs of images are matched."""
+"""Lists of pairs, and the command match with --pairs."""
 import csv
 import os
 import shutil
@@ -39,7 +39,7 @@ class Lists(Collection):
         out, camera = self.folder / 'out', ('--camera', 'SIMPLE_PINHOLE,400,300,500,200,150')
         self.match(out, 'a.png more/c.png\n', 0, described=['a.png', 'more/c.png'])
         before = (out / 'a.png/more-c.png.csv').stat().st_ino
-        (out / 'pairs.csv').write_bytes((out / 'pairs.csv').read_bytes() + b'b.png,a.png,1')  # as a killed run leaves it
+        (out / 'pairs.csv').write_bytes((out / 'pairs.csv').read_bytes() + b'b.png,a.png,1')  # like after a killed run
         self.match(out, described=['a.png', 'b.png'])
         self.assertEqual((out / 'a.png/more-c.png.csv').stat().st_ino, before)
         self.match(out, described=[])
@@ -49,14 +49,14 @@ class Lists(Collection):
         alone = match_images(self.images / 'a.png', self.images / 'b.png', self.folder / 'alone.csv', options=FeatureOptions(points=300))
         self.assertEqual((out / 'a.png/b.png.csv').read_text(), (self.folder / 'alone.csv').read_text())
         self.assertEqual(rows[1]['matches'], str(len(alone.bits)))
-        os.utime(self.images / 'b.png', (1, 1))  # as cp and rsync do
+        os.utime(self.images / 'b.png', (1, 1))  # like cp and rsync
         self.match(out, described=[])
         self.match(self.folder / 'posed', 'a.png b.png\n', 0, *camera)
         with open(self.folder / 'posed/pairs.csv', newline='') as file:
             self.assertAlmostEqual(float(next(csv.DictReader(file))['r11']), 1, delta=.01)
 
     def rows(self, out):
-        """Of pairs.csv or a file in HDF5: each pair, and whether it is found."""
+        """The pairs of pairs.csv or an HDF5 file, and whether each is found."""
         if out.suffix == '.h5':
             with h5py.File(out) as file:
                 return [(first, second, bool(file[first][second].attrs['found'])) for first in file if first[1] == '.' for second in file[first]]
@@ -110,7 +110,7 @@ class Lists(Collection):
                 self.assertEqual((status, errors.splitlines()[-1]), (130, 'interrupted; the same command goes on from here'))
                 mine, left = out.with_name('mine.12-3.tmp'), {'one': out / 'pairs.csv.12-3.tmp', 'two': out / 'a.png/more-c.png.csv.12-3.tmp'}
                 for path in (mine, left.get(name, self.folder / 'x.h5.12-3.tmp')):
-                    path.touch()  # as kill -9 leaves the second
+                    path.touch()  # like after kill -9 during the second pair
                 self.match(out, described=['a.png', 'b.png'] if name == 'one' else [])
                 mine.unlink()
                 self.assertEqual(sorted(self.rows(out)), [('a.png', 'b.png', True), ('a.png', 'more-c.png' if name == 'x.h5' else 'more/c.png', True)])

@@ -8,7 +8,7 @@ from opencv_iib import propagateMatches, refineMatches
 
 
 class Refinement(unittest.TestCase):
-    """The same picture, moved by whole pixels and in another light."""
+    """A picture, and the same one shifted by whole pixels under changed illumination."""
 
     def setUp(self):
         whole = texture(420, 320, seed=5)

@@ -20,7 +20,7 @@ class Interrupted(Exception):
 
 
 def until(arrays, count):
-    """The first `count` of them, and then an error."""
+    """Yields the first `count` values, then raises an error."""
     yield from arrays[:count]
     raise Interrupted
 
@@ -46,7 +46,7 @@ class ShardsTest(InFolder):
                 folder = f'{self.folder}-{rows_per_shard}'
                 index = shards.write(folder, self.codes, rows_per_shard)
                 self.assertEqual(index.segments(), -(-400 // min(rows_per_shard, 400)))
-                for k in (1, 5, 100):  # more than a shard has
+                for k in (1, 5, 100):  # more than a shard holds
                     self.expect_found(shards.search(folder, self.queries, k), k)
 
     def test_arrays_stay_whole(self):
@@ -117,7 +117,7 @@ class ShardsTest(InFolder):
         self.expect_found(shards.search(self.folder, self.queries), 5)
 
     def altered(self):
-        """Alters a shard, and gives its name."""
+        """Alters a shard. :return: its name."""
         name = os.path.join(self.folder, 'segment-000003.iib')
         content = bytearray(Path(name).read_bytes())
         content[-9] ^= 1
@@ -151,7 +151,7 @@ class ShardsTest(InFolder):
             self.expect_found(shards.search(self.folder, self.queries, 5, client), 5,
                               np.concatenate([self.codes, self.codes[:50]]))
             name = self.altered()
-            index.remove([index.images() - 1])  # so that all workers map it anew
+            index.remove([index.images() - 1])  # all workers must map it again
             with self.assertRaisesRegex(opencv_iib.error, re.escape(name)):
                 shards.search(self.folder, self.queries, 5, client)
 
@@ -160,7 +160,7 @@ class ShardsTest(InFolder):
         shards.write(self.folder, self.codes, 57)
         with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
                                       silence_logs=50) as cluster, distributed.Client(cluster) as client:
-            self.expect_found(self.while_workers_die(client, 2), 5)  # nannies start others
+            self.expect_found(self.while_workers_die(client, 2), 5)  # nannies start new workers
         with distributed.LocalCluster(n_workers=0, dashboard_address=None, silence_logs=50) as cluster, \
                 distributed.Client(cluster) as client, mock.patch.object(shards, '_WITHOUT_WORKERS', 1), \
                 self.assertRaisesRegex(RuntimeError, 'no worker'):
@@ -188,7 +188,7 @@ class ShardsTest(InFolder):
             self.expect_found(found[0], 5)
 
     def while_workers_die(self, client, count):
-        """A search meanwhile: the workers are stopped before it, and killed when they have been given their shards."""
+        """A search whose workers are stopped before it, and killed once they have their shards."""
         found = []
         processes = list(client.run(os.getpid).values())[:count]
         for process in processes:
@@ -196,7 +196,7 @@ class ShardsTest(InFolder):
         thread = threading.Thread(target=lambda: found.append(shards.search(self.folder, self.queries, 5, client)))
         thread.start()
         thread.join(.5)
-        self.assertTrue(thread.is_alive())  # it waits for the workers
+        self.assertTrue(thread.is_alive())  # the search waits for workers
         for process in processes:
             os.kill(process, signal.SIGKILL)
         thread.join(60)

@@ -1,4 +1,4 @@
-"""Standard output and error of the commands, and how these end."""
+"""Standard output and error of the commands, and their exit statuses."""
 import io
 import os
 import re
@@ -20,7 +20,7 @@ from support import InFolder, cv2, run_command, texture
 
 
 def command(*arguments, **options):
-    """A program of its own, with what the shell or the desktop gives it."""
+    """A separate program, with the streams of a shell or a desktop."""
     return subprocess.run([sys.executable, '-m', 'opencv_iib', *map(str, arguments)], capture_output='stdout' not in options, **options)
 
 
@@ -40,7 +40,7 @@ class Output(unittest.TestCase):
                 progress.close()
                 _streams.note('a line')
         with open(os.devnull, 'w') as null, mock.patch('os.close', lambda descriptor: None):
-            os.dup2(null.fileno(), streams[-1].fileno()) if len(streams) == 3 else None  # so that it can be closed
+            os.dup2(null.fileno(), streams[-1].fileno()) if len(streams) == 3 else None  # it must be possible to close it
         for stream in streams[2:]:
             stream.close()
 
@@ -125,7 +125,7 @@ class Commands(InFolder):
 
     @unittest.skipIf(os.name == 'nt', 'no signals')
     def test_ctrl_c_once_and_once_more_at_once(self):
-        # Where this runs in the background of a shell, Ctrl-C is ignored, by all that it starts, too.
+        # In the background of a shell, Ctrl-C is ignored, also by child processes.
         self.addCleanup(signal.signal, signal.SIGINT, signal.signal(signal.SIGINT, signal.default_int_handler))
         from wall import CAMERA, mapped
         shutil.rmtree(self.folder)

@@ -1,4 +1,4 @@
-"""The type stubs say what is there: mypy's stubtest. Those of the extension itself are nanobind's."""
+"""Checks the package's type stubs by mypy's stubtest. Those of the extension come from nanobind."""
 import pydoc
 import re
 import shutil
@@ -19,7 +19,7 @@ def is_a(name):
     return lambda value: type(value).__name__.startswith(name)
 
 
-# What stubtest says of what it cannot read, and of which objects: nanobind's functions and classes; constructors that lack; copies, which a
+# Messages of stubtest about objects that it cannot read: nanobind's functions and classes; missing constructors; copies, which a
 # decorator adds; tuples with a reason beside them; and functions with a cache.
 UNREADABLE = {
     'is not a function': is_a('nb_func'),

@@ -1,4 +1,4 @@
-"""Images that their files store turned, as telephones write them."""
+"""Images that are stored rotated, as telephones write them."""
 import csv
 import json
 import struct
@@ -21,7 +21,7 @@ from support import cv2, optional, run_command, texture
 
 h5py = optional('h5py')
 
-STORED = {1: 1, 2: 2, 3: 3, 4: 4, 5: 5, 6: 8, 7: 7, 8: 6}  # what turns an upright image to one that is upright by this orientation
+STORED = {1: 1, 2: 2, 3: 3, 4: 4, 5: 5, 6: 8, 7: 7, 8: 6}  # inverse orientations: from upright to stored images
 ROTATIONS = 3, 6, 8
 TURNED = [6, 3, 8, 2, 4, 5, 7]
 
@@ -124,7 +124,7 @@ class Commands(Collection):
             arguments = 'match', self.first, path, '--points', '300', '--out', self.folder / 'm.csv'
             right, wrong = (run_command(*arguments, *more)[1] for more in ((), ('--no-exif',)))
             self.assertNotIn('turned', right)
-            if orientation in ROTATIONS:  # which the images themselves tell
+            if orientation in ROTATIONS:  # the images themselves show these
                 self.assertRegex(wrong, rf'is rotated by {dict(zip(ROTATIONS, (180, 270, 90)))[orientation]} degrees')
                 self.assertGreater(int(wrong.split()[1]), .7 * int(right.split()[1]))
             else:
@@ -168,7 +168,7 @@ class Commands(Collection):
         done = align(self.first, [self.write(self.b, orientation) for orientation in TURNED], self.folder / 'out', 1)
         for orientation, each in zip(TURNED, done):
             turn = _upright.Turn(orientation, *stored(self.b, orientation).shape[1::-1])
-            back = np.reshape(each.transform, (3, 3)) @ turn.matrix  # from the upright image
+            back = np.reshape(each.transform, (3, 3)) @ turn.matrix  # of the upright image
             np.testing.assert_allclose(back, [[1, 0, 30], [0, 1, 20], [0, 0, 1]], atol=.1)
             self.assertAlmostEqual((each.rotation + 180) % 360, 180, delta=.1)
             self.assertNotIn('turned', str(each))
@@ -184,7 +184,7 @@ class Commands(Collection):
         first = self.folder / 'a.png'
         cv2.imwrite(str(first), picture)
         images = [self.write(picture[20:320, 30:430], orientation) for orientation in ROTATIONS]
-        for _ in range(2):  # also of those that an earlier call has aligned
+        for _ in range(2):  # also for results of an earlier call
             done = align(first, images, self.folder / 'turned', exif=False)
             self.assertEqual([str(each).split(', ')[-1] for each in done], [f'rotated by {angle} degrees' for angle in (180, 270, 90)])
         self.assertNotIn('turned', ''.join(map(str, align(first, images, self.folder / 'turned'))))

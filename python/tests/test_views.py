@@ -9,7 +9,7 @@ from support import texture
 
 
 def rotated(image):
-    """By 90 degrees clockwise, darker."""
+    """Rotated by 90 degrees clockwise, and darker."""
     return np.ascontiguousarray(np.rot90(image, -1) // 2 + 10)
 
 

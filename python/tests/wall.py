@@ -1,4 +1,4 @@
-"""A wall that was photographed by day, its map, and photographs of it in the dark."""
+"""A wall by day, its map, and images of it in the dark."""
 import atexit
 import functools
 import os
@@ -19,12 +19,12 @@ PLACES = [(-1.5, 0), (-1, .3), (-.5, 0), (0, .3), (.5, 0), (1, .3)]  #: x and y 
 
 
 def wall(seed):
-    """1200 x 900, a hundred pixels a metre."""
+    """The wall's texture, 1200 x 900, a hundred pixels a metre."""
     return cv2.resize(texture(240, 180, seed=seed), (1200, 900), interpolation=cv2.INTER_CUBIC)
 
 
 def rigid(turn, place):
-    """4 x 4, of a camera at a place."""
+    """Camera from world, 4 x 4, of a camera at a place."""
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = turn, -turn @ np.array(place)
     return pose
@@ -49,19 +49,19 @@ def evening(grey, noise=2):
 
 
 def write_model(folder, poses, camera=CAMERA):
-    """A COLMAP model without points, of poses by name."""
+    """Writes a COLMAP model without points. :param poses: by name."""
     os.makedirs(folder, exist_ok=True)
     _core.writeModel(folder, [_core.PosedImage(name, Camera.parse(camera), pose, np.empty((0, 2))) for name, pose in poses.items()])
 
 
 def trajectory(folder, name='trajectory.txt'):
-    """By names without blanks: centre, quaternion x y z w."""
+    """Poses by names without blanks: centre, quaternion x y z w."""
     lines = [line.split() for line in Path(folder, name).read_text().splitlines() if line[0] != '#']
     return {line[0]: np.array(line[1:], float) for line in lines}
 
 
-NAMES = [*(f'left side/{i} of 6.png' for i in range(3)), '0.png', '1.png', '2.png']  #: of the images at these places
-TRUTH = {'a/b': (-.8, .1), 'a-b': (-.2, .2), 'c': (.3, .1)}  #: where those in the dark are
+NAMES = [*(f'left side/{i} of 6.png' for i in range(3)), '0.png', '1.png', '2.png']  #: places of the map's images
+TRUTH = {'a/b': (-.8, .1), 'a-b': (-.2, .2), 'c': (.3, .1)}  #: places of the images in the dark
 
 
 @functools.lru_cache(maxsize=None)
@@ -84,7 +84,7 @@ def mapped():
 
 @unittest.skipIf(cv2 is None, 'no cv2')
 class OnWall(Commands):
-    """Has the map of the wall, and what was photographed in the dark."""
+    """Base of tests that use the wall's map and the images in the dark."""
 
     @classmethod
     def setUpClass(cls):

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Cross-compiles the modules and their tests for another processor and runs those of descriptors, matching, files and poses under
-# qemu-user: golden hashes included.
+# Cross-compiles the modules and their tests for another processor, and runs the tests of descriptors, matching, files and poses under
+# qemu-user, including golden hashes.
 #   scripts/helpers/emulated.sh arm64|armhf [--gtest_...]      64 bits with NEON; 32 bits without
 #   scripts/helpers/emulated.sh arm64 --wheel                  the wheel for Debian's Python, and python/tests with it
 # The packages of the architecture come from the machine's own apt mirror and are unpacked in the cache; the system's
@@ -41,9 +41,9 @@ if [ ! -d "$sysroot" ]; then
             -o Dir::State::status="$work/status" -o Dir::Cache="$work" -o APT::Sandbox::User="$(id -un)" \
             -o Debug::NoLocking=1 "$@"
     }
-    apt update >"$work/log" 2>&1 || :  # one of several suites may be out of step for a while
+    apt update >"$work/log" 2>&1 || :  # one of several suites may be inconsistent for a while
     quietly "$work/log" apt -y --no-install-recommends --download-only install $packages
-    # The files alone, in the merged layout of /usr; no maintainer script runs.
+    # Only files, in the merged layout of /usr; no maintainer script runs.
     for folder in lib bin sbin; do
         ln -s "usr/$folder" "$work/root/$folder"
     done
@@ -54,7 +54,7 @@ if [ ! -d "$sysroot" ]; then
 fi
 
 if [ -n "$wheel" ]; then
-    # Only Python runs under qemu, and that of the environments made from it; CMake and the compilers are this machine's.
+    # Only Python and its virtual environments run under qemu; CMake and the compilers are this machine's.
     python="$sysroot/usr/bin/python3-emulated"
     cat >"$python" <<EOF
 #!/bin/sh
@@ -93,9 +93,9 @@ configure -DIIB_BUILD_TOOLS=OFF "-DOpenCV_DIR=$libraries/cmake/opencv4" \
     "-DCMAKE_EXE_LINKER_FLAGS=-Wl,-rpath-link,$path" "-DCMAKE_SHARED_LINKER_FLAGS=-Wl,-rpath-link,$path"
 programs="opencv_test_iib opencv_test_iib_index opencv_test_iib_geometry"
 build_targets $programs
-# Of iib_geometry a part, so that the night's step stays below 90 minutes.
+# Only a part of iib_geometry's tests, so that the step stays below 90 minutes.
 poses="RelativePose*:Verdict*:Localization.under_changed_illumination:Alignment.finds_each_kind*"
-# A kernel of 64 bits gives positions in folders of ext4 that C's library of 32 bits refuses; in memory they are small.
+# A 64-bit kernel returns positions in folders of ext4 that a 32-bit C library refuses; in memory file systems they are small.
 [ ! -d /dev/shm ] || export OPENCV_TEMP_PATH=/dev/shm
 for program in $programs; do
     say "$program under qemu"

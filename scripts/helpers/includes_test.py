@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
-"""The picture of includes of modules, which CONTRIBUTING.md has: includes_test.py [--draw] FOLDER...; with --draw it is written anew.
+"""Checks the includes of modules, and their picture in CONTRIBUTING.md: includes_test.py [--draw] FOLDER...; --draw writes the picture.
 
-It reads the sources, since it is about them. Arrows between folders point downwards only, no file includes itself by way of
-others, where a header and the source of the same name count as one, nothing leaves the module but for what tests share (what modules share is in opencv2/iib/detail), and raw
-intrinsics stand in one file.
+- Arrows between folders point downwards only.
+- No file includes itself through others; a header and the source of the same name count as one file.
+- A module includes no file of another one, except headers in opencv2/iib/detail and what tests share.
+- Raw intrinsics are only in the two files vectors.simd.hpp.
 """
 import pathlib
 import re
 import sys
 
-# What a folder below src may include, besides precomp.hpp; the rest of the module includes what it likes.
+# What a folder below src may include, besides precomp.hpp; other files of the module may include anything.
 ALLOWED = {'': {''}, 'common': {'common'}, 'rotation': {'rotation', 'common'}}
 ALLOWED['verdict'] = {'verdict', 'common'}  # of iib_geometry
 ALLOWED['pose'] = {'pose', *ALLOWED['verdict']}
@@ -22,9 +23,9 @@ for wing in ('descriptor', 'matcher', 'detector', 'normalization', 'refinement')
     ALLOWED[wing] = {wing, wing + '/kernels', 'common'}
 for wing in ('detector', 'refinement'):
     ALLOWED[wing].add('normalization')
-ALLOWED['detector'].add('normalization/kernels')  # halves the normalized image, too
+ALLOWED['detector'].add('normalization/kernels')  # also halves the normalized image
 ALLOWED['descriptor'].add('detector')  # an extractor writes and reads the file of its detector
-#: What tests of other modules may include of iib, and how many files each module has at least.
+#: Files of iib that tests of other modules may include, and the least number of files in each module.
 SHARED = ('iib/test/support/*.hpp', 'iib/perf/matcher.hpp')
 FILES = {'iib': 80, 'iib_index': 10, 'iib_geometry': 50}
 INTRINSICS = re.compile(r'(?:^|[^a-zA-Z_])(?:_mm[0-9]*_|__m(?:128|256|512)|v[a-z]+q_[a-z]*[0-9])', re.MULTILINE)
@@ -35,7 +36,7 @@ def folder(path):
 
 
 def resolved(module, file, path):
-    """What a file includes by a path: from its own folder, or from src, as the compiler looks for it."""
+    """The files that a file includes: from its own folder, or from src, as the compiler searches."""
     beside = (file.parent / path).resolve()
     return beside if beside.exists() else module / 'src' / path
 
@@ -44,11 +45,11 @@ def mistakes(module):
     files = sorted(module.rglob('*.[ch]pp'))
     if len(files) < FILES[module.name]:
         yield 'only %d files below %s' % (len(files), module)
-    units = {}  # of src, and which they include
+    units = {}  # files of src, and the files that each includes
     for file in files:
         text, name = file.read_text(), file.relative_to(module)
         included = []
-        for path in re.findall(r'^#include "([^"]*)(?<!_declarations.hpp)"', text, re.MULTILINE):  # those CMake makes
+        for path in re.findall(r'^#include "([^"]*)(?<!_declarations.hpp)"', text, re.MULTILINE):  # made by CMake
             target = resolved(module, file, path)
             if module not in target.parents and not any(target.match(shared) for shared in SHARED):
                 yield '%s includes %s, which is not of the module' % (name, path)
@@ -65,7 +66,7 @@ def mistakes(module):
         units.setdefault(unit, set()).update({path.with_suffix('') for path in included} - {unit})
         if INTRINSICS.search(text) and name.name != 'vectors.simd.hpp':
             yield '%s has raw intrinsics; give them a name in a vectors.simd.hpp' % name
-    # Units that include no other one still there are taken away, until none is left: what remains are circles.
+    # Remove units without includes until none is left; circles remain.
     while True:
         free = {unit for unit, included in units.items() if not included & units.keys()}
         if not free:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fails where a link of a site of HTML pages leads nowhere: links_test.py FOLDER
+"""Checks that all links of a site of HTML pages have a target: links_test.py FOLDER
 
 Files and anchors below FOLDER are looked up; addresses of other sites are left alone.
 """

@@ -12,8 +12,8 @@ zig="$cache/zig/bin/python-zig"
 }
 for architecture in aarch64 x86_64; do
     build="$root/build-macos-$architecture"
-    # Not as CMAKE_CXX_COMPILER, whose arguments would count as a change in a folder that exists. The compiler is known by an
-    # object: to link, zig would compile all of libc++ first.
+    # Not as CMAKE_CXX_COMPILER, whose arguments would count as a change of an existing folder. CMake identifies the compiler by an
+    # object file: before linking, zig would compile all of libc++.
     export CXX="$zig c++ -target $architecture-macos.11.0"
     configure -DCMAKE_SYSTEM_NAME=Darwin -DCMAKE_SYSTEM_PROCESSOR=$architecture -DCMAKE_BUILD_TYPE=Debug \
         -DCMAKE_CXX_COMPILER_ID_TEST_FLAGS_FIRST=-c \

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Runs every command of README.md and of the first program in doc/install.md, in their order, on a bare Debian made by debootstrap, as someone
-# would who has just unpacked a release: what is in the `sh` blocks but for a wheel's, with the files of the `cmake`, `cpp` and `python` blocks.
-# The paths hold spaces. Needs root; the bare system stays in the cache.
+# Runs every command of README.md and of the first program in doc/install.md, in order, on a bare Debian made by debootstrap, like someone
+# who has just unpacked a release: the `sh` blocks except those for a wheel, with the files of the `cmake`, `cpp` and `python` blocks.
+# The paths contain spaces. Needs root; the bare system stays in the cache.
 #   scripts/helpers/newcomer.sh [SUITE] [WHEEL]    by default bookworm
-# With a wheel, that of scripts/wheel.sh, its commands for a wheel and its Python program alone, in a system without a compiler: from pip
-# to the program's answer in ten seconds.
+# With a wheel of scripts/wheel.sh, only the commands for a wheel and the Python program, in a system without a compiler: from pip
+# to the program's output in ten seconds.
 . "$(dirname "$0")/lib.sh"
 
 wheel=""
@@ -30,14 +30,14 @@ mkdir "$work/root"
 tar -C "$work/root" -xf "$bare"
 reach_network "$work/root"
 
-# The root lives for this run alone: dpkg need not wait for the disk after each file.
+# The root is temporary: dpkg need not wait for the disk after each file.
 echo force-unsafe-io >"$work/root/etc/dpkg/dpkg.cfg.d/newcomer"
 
 home="$work/root/root"
 mkdir "$home/the repository" "$home/my project"
 copy_tree "$home/the repository"
 cp "$root/tools/synthetic/day.png" "$root/tools/synthetic/night.png" "$home/my project"
-# The blocks as files: commands that speak of match_pair belong to the user's own project.
+# The blocks as files. Commands with match_pair belong to the user's own project.
 "$python3" - "$root" "$home" <<'PYTHON'
 import pathlib
 import re

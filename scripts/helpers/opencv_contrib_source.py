@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Prints the folder of the newest OpenCV source with opencv_contrib beside it, from the source distribution of
-opencv-contrib-python, which pip brings into the cache once: `opencv` and `opencv_contrib` in that folder. Delete it from
+"""Prints the folder of the newest OpenCV source with opencv_contrib beside it. It comes from the source distribution of
+opencv-contrib-python, which pip downloads into the cache once: `opencv` and `opencv_contrib` in that folder. Delete it from
 the cache to look for a newer one. Windows and macOS too.
 
-    scripts/helpers/opencv_contrib_source.py [MAJOR]      4, or 5; 4 unless it is said
+    scripts/helpers/opencv_contrib_source.py [MAJOR]      4 (default) or 5
 """
 import glob
 import os
@@ -15,7 +15,7 @@ import venv
 
 
 def fetch(major, tree):
-    """pip in an environment of its own: Debian's Python and isolated builds have none."""
+    """pip in a separate environment, since Debian's Python and isolated builds have none."""
     print('fetching the source of opencv-contrib-python %s with pip' % major, file=sys.stderr)
     with tempfile.TemporaryDirectory(dir=os.path.dirname(tree), prefix='fetch.') as work:
         venv.create(work + '/venv', with_pip=True)
@@ -27,7 +27,7 @@ def fetch(major, tree):
         try:
             os.rename(glob.glob(work + '/tree/*')[0], tree)
         except OSError:
-            if not complete(tree):  # else another process has brought it meanwhile
+            if not complete(tree):  # otherwise another process has downloaded it meanwhile
                 raise
 
 

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Prints the folder of the OpenCV source that belongs to the installed libopencv-core-dev. The first run
-# fetches it from the machine's own apt mirror into the cache; nothing of the system's apt changes.
+# Prints the folder of the OpenCV source of the installed libopencv-core-dev. The first run
+# fetches it from the machine's own apt mirror into the cache; the system's apt does not change.
 . "$(dirname "$0")/lib.sh"
 
 [ $# = 0 ] || fail "takes no argument"
@@ -17,7 +17,7 @@ if [ ! -f "$tree/CMakeLists.txt" ]; then
     work=$(mktemp -d "$cache/fetch.XXXXXX")
     trap 'rm -rf "$work"' EXIT
     mkdir -p "$work/parts" "$work/lists/partial" "$work/tree"
-    # The machine's binary entries, turned into source entries.
+    # The machine's binary entries, converted to source entries.
     for list in /etc/apt/sources.list /etc/apt/sources.list.d/*.list; do
         [ -f "$list" ] && sed -n 's/^deb[[:space:]]/deb-src /p' "$list" >"$work/parts/$(basename "$list" .list).list"
     done

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints the Python package's reference as a page of Markdown, from its sources: python_api.py
 
-What classes have from the extension is there where the package is installed, with the stub that its build has made.
+Members that classes inherit from the extension need an installed package and its stub.
 """
 import ast
 import importlib.util
@@ -20,7 +20,7 @@ def signature(node, owner):
 
 
 def methods(node):
-    """Of a class: its own, and the documented ones of the extension's class that it extends."""
+    """Members of a class: its own, and the documented ones of the extension's class that it extends."""
     found = [member for member in node.body if isinstance(member, ast.FunctionDef)]
     for base in map(ast.unparse, node.bases):
         if base.removeprefix('_core.') in STUB:
@@ -30,7 +30,7 @@ def methods(node):
 
 
 def entries(nodes, owner=''):
-    """Signatures, a line for each overload, and docstrings as text, since Doxygen would read more into them."""
+    """Signatures, one line for each overload, and docstrings as plain text, so that Doxygen does not interpret them."""
     heads = []
     for node in nodes:
         if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and not node.name.startswith('_'):

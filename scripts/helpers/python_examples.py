@@ -18,19 +18,19 @@ NAMES = ('day_night', 'align', 'webcam_year', 'poses', 'reconstruction', 'two_fl
 
 
 def run(code, variables, pictures):
-    """What a cell prints and draws, as Markdown."""
+    """The output and the pictures of a cell, as Markdown."""
     before, printed = set(os.listdir()), io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(code, variables)
     text = printed.getvalue().rstrip()
     print('```text\n%s\n```\n' % text if text else '')
     for name in sorted(name for name in set(os.listdir()) - before if os.path.isfile(name)):
-        shutil.copy(name, pictures / ('output_' + name))  # Doxygen takes all pictures of a site for one folder
+        shutil.copy(name, pictures / ('output_' + name))  # Doxygen puts all pictures of a site into one folder
         print('![What it draws](output_%s)\n' % name)
 
 
 def show(name, pictures):
-    """An example; what stands above its first cell counts as one."""
+    """An example; the text above its first cell counts as a cell."""
     text = (EXAMPLES / (name + '.py')).read_text(encoding='utf-8')
     head, *cells = text.split('\n# %% ')
     print('## %s.py\n' % name)

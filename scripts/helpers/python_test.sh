@@ -1,10 +1,10 @@
 #!/bin/sh
 # Installs the Python package into clean virtual environments and runs python/tests there: with pip's newest OpenCV, and
-# with Debian's (python3-opencv). Skips with a word where pip reaches no package index, but for --servers, which fails.
+# with Debian's (python3-opencv). Without a package index for pip it skips with a message; with --servers it fails.
 #   scripts/helpers/python_test.sh [--servers] [LIBRARY]
-# --servers: with PostgreSQL, and with Dask's workers in network namespaces, too (root).
-# LIBRARY: the module as a static library of position-independent code, built with the installed OpenCV, as ctest's entry
-# `python` has it, beside which the wheel is left; without it the whole package is built, which takes minutes.
+# --servers: also with PostgreSQL, and with Dask's workers in network namespaces (needs root).
+# LIBRARY: the module as a static library of position-independent code, built with the installed OpenCV, like ctest's entry
+# `python`; the wheel is left beside it. Without it the whole package is built, which takes minutes.
 . "$(dirname "$0")/lib.sh"
 
 servers=""
@@ -20,7 +20,7 @@ library="${1:-}"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# check ENVIRONMENT PACKAGE...: the tests in this environment, with these packages.
+# check ENVIRONMENT PACKAGE...: runs the tests in this environment, with these packages.
 check() {
     environment="$work/$1"
     shift

@@ -11,7 +11,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAIR = [str(ROOT / 'tools/synthetic' / name) for name in ('day.png', 'night.png')]
-# Program: arguments, and what it prints. The query of the last one is the first image: every point finds itself.
+# Program: arguments and output. The last program's query is its first image, so every point finds itself.
 TUTORIALS = {'day_night': (PAIR, r'\d\d+ of \d+ matches agree with\n.*'),
              'relative_pose': ([*PAIR, '700', 'pose.png'], r'\d\d+ of \d+ matches agree with\n.*'),
              'presets': ([], "128 bytes, 22.5 times the keypoint's size\n64 bytes, 22.5 times the keypoint's size\n"),
@@ -43,13 +43,13 @@ build, (compiler, flags, generator) = os.path.abspath(sys.argv[1]), sys.argv[2:]
 
 
 def block(page, language, pattern):
-    """The first block of a language in a page that holds a text."""
+    """The first block of a language that contains a text."""
     found = re.findall(r'^```%s\n(.*?)^```$' % language, (ROOT / page).read_text(), re.MULTILINE | re.DOTALL)
     return next(text for text in found if pattern in text)
 
 
 def run(*command, code=0, prints=None):
-    """What a command writes; it ends as it should, and prints that."""
+    """Runs a command, and checks its exit status and output. :return: its output."""
     print(shlex.join(map(str, command)), flush=True)
     done = subprocess.run(list(map(str, command)), cwd=work, capture_output=True, text=True)
     if done.returncode != code or prints is not None and not re.fullmatch(prints, done.stdout, re.DOTALL):
@@ -58,7 +58,7 @@ def run(*command, code=0, prints=None):
 
 
 def match(program):
-    """What doc/install.md's program does with the pair, and without images that can be read."""
+    """Runs doc/install.md's program with the pair, and with unreadable images."""
     run(program, *PAIR, prints=r'[1-9]\d* matches\n')
     for arguments in (['no-such-image.png', PAIR[1]], [PAIR[0], 'no-such-image.png'], []):
         run(program, *arguments, code=1, prints='0 matches\n')
@@ -74,7 +74,7 @@ def compile_(source, text, *options):
     run(compiler, *shlex.split(flags), '-std=c++11', source, *packaged, *(options or ('-o', pathlib.Path(source).stem)))
 
 
-with tempfile.TemporaryDirectory(prefix='a folder ') as name:  # paths with blanks must do
+with tempfile.TemporaryDirectory(prefix='a folder ') as name:  # paths with blanks must work
     work = pathlib.Path(name)
     project, prefix = work / 'project', work / 'prefix'
     project.mkdir()
@@ -107,7 +107,7 @@ target_link_libraries(index opencv_iib_index)
     if not (work / 'pose.png').exists():
         sys.exit('relative_pose writes no picture')
 
-    # The errors of iib_geometry, where it was built, say what is wrong.
+    # The errors of iib_geometry, if it was built, say what is wrong.
     if (prefix / 'include/opencv4/opencv2/iib/localization.hpp').exists():
         (work / 'localizer').mkdir()
         (work / 'localizer/localizer.cpp').write_text(LOCALIZER)
@@ -126,7 +126,7 @@ target_link_libraries(align opencv_iib_geometry opencv_imgcodecs opencv_imgproc)
         run(work / 'localizer by cmake/align', *PAIR, 'aligned.png', prints=r'\d\d+ matches agree; .*\n')
         run(work / 'localizer by cmake/localizer', 'nowhere', prints='nowhere is no map: it has no map.iib')
 
-    # The version is CMakeLists.txt's; other minor versions may break, so that a program that asks for one does not get this one.
+    # The version is CMakeLists.txt's. Minor versions may be incompatible, so a program that asks for another one is refused.
     major, minor, patch = map(int, re.search(r'project\(opencv_iib VERSION (\d+)\.(\d+)\.(\d+)', (ROOT / 'CMakeLists.txt').read_text()).groups())
     run('pkg-config', '--modversion', 'opencv_iib', prints='%d[.]%d[.]%d\n' % (major, minor, patch))
     asked = {'%d.%d' % (major, minor): 1, '%d.%d.%d' % (major, minor, patch): 1, '%d.%d.%d' % (major, minor, patch + 1): 0,

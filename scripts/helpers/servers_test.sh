@@ -1,8 +1,8 @@
 #!/bin/sh
-# Tests what needs servers: python/examples/postgres.py with a PostgreSQL of its own;
-# Dask's workers whose network is cut while they work, each in a network namespace, all within one that ends with the tests (root).
+# Tests that need servers: python/examples/postgres.py with a separate PostgreSQL;
+# Dask's workers whose network is cut while they work. Each is in a network namespace, all within one that ends with the tests (needs root).
 #   scripts/helpers/servers_test.sh PYTHON
-# PYTHON: an interpreter that has the package, psycopg and distributed.
+# PYTHON: an interpreter with the package, psycopg and distributed.
 . "$(dirname "$0")/lib.sh"
 
 [ $# = 1 ] || fail "takes an interpreter"

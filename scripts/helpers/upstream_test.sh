@@ -1,6 +1,6 @@
 #!/bin/sh
-# Lays the branches for opencv_contrib into an empty repository: each must keep to its limit of size, the last one must be
-# modules/iib but for test/real, and the first one must have golden bits of modules/iib. Ends with code 77 outside of a clone.
+# Makes the branches for opencv_contrib in an empty repository. Each must keep to its limit of size, the last one must be
+# modules/iib without test/real, and the first one must have golden bits of modules/iib. Ends with code 77 outside of a clone.
 . "$(dirname "$0")/lib.sh"
 
 [ $# = 0 ] || fail "takes no argument"

@@ -23,7 +23,7 @@ def camera(matrix):
 
 
 def estimate(poselib, numbers, threshold):
-    """The error as the other estimators' in degrees, and the number of inliers."""
+    """The pose's error in degrees, as for the other estimators, and its number of inliers."""
     cameras, R, t, points = numbers[:18], numbers[18:27].reshape(3, 3), numbers[27:30], numbers[30:].reshape(-1, 4)
     if len(points) < 5:
         return 'inf', 0

@@ -19,7 +19,7 @@ namespace {
 using cv::iib::IIB;
 typedef cv::Ptr<cv::Feature2D> Feature;
 
-//! IIB with the paper's parameters but for some, on FAST corners.
+//! IIB on FAST corners, with the paper's parameters except for the given ones.
 Configuration iib(const std::string& name, int granularity = 4, int channels = IIB::CHANNELS_DEFAULT,
         int mapping = IIB::MAPPING_MEAN, bool overlap = false, bool oriented = false,
         const std::vector<std::string>& extraNames = std::vector<std::string>())
@@ -53,7 +53,7 @@ Configuration akaze(int bits)
 }
 
 #ifdef IIB_HAVE_XFEATURES2D
-//! As OpenCV's documentation recommends for corners: five times their size, 35 pixels.
+//! OpenCV's documentation recommends five times the size of corners, 35 pixels.
 const float CORNER_SIZE = 7, CORNER_SCALE = 5;
 
 template <class T>
@@ -77,7 +77,7 @@ void addXfeatures2d(std::vector<Configuration>& baselines)
         baselines.push_back(baseline("LATCH-" + std::to_string(8 * bytes), side,
                 [bytes]() -> Feature { return LATCH::create(bytes, false); }));
     }
-    // A pattern of 22 px about keypoints of size 7.
+    // The pattern is 22 px wide at keypoints of size 7.
     baselines.push_back(
             baseline("FREAK", 7 * SEED_RADIUS / 22, []() -> Feature { return FREAK::create(false); }));
     addBeblid<BEBLID>("BEBLID", 256, BEBLID::SIZE_256_BITS, baselines);
@@ -87,7 +87,7 @@ void addXfeatures2d(std::vector<Configuration>& baselines)
     addBeblid<TEBLID>("TEBLID", 512, TEBLID::SIZE_512_BITS, baselines);
 #endif
 #ifdef IIB_WITH_SURF
-    // The window is 20 times 1.2 / 9 of the size.
+    // The window is 20 * 1.2 / 9 times the size.
     baselines.push_back(baseline(
             "SURF", side * 9 / 24, []() -> Feature { return SURF::create(100, 4, 3, false, true); }));
 #endif
@@ -180,9 +180,9 @@ int descriptorBytes(const cv::Feature2D& feature)
 
 std::vector<Configuration> baselineConfigurations()
 {
-    std::vector<Configuration> all = {// Its patch is 31 px whatever the size.
+    std::vector<Configuration> all = {// Its patch is 31 px for every size.
             baseline("ORB", 31, []() -> Feature { return cv::ORB::create(); }),
-            // A pattern of 9.2 px about keypoints of size 7.2.
+            // The pattern is 9.2 px wide at keypoints of size 7.2.
             baseline("BRISK", SEED_RADIUS * 7.2f / 9.2f, []() -> Feature { return cv::BRISK::create(); }),
             // Four bins of 1.5 sizes each.
             baseline("SIFT", 2 * SEED_RADIUS / 6, []() -> Feature { return cv::SIFT::create(); }), akaze(128),

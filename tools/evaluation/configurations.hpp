@@ -19,8 +19,8 @@ struct Configuration
     std::string name;
     std::function<cv::Ptr<cv::Feature2D>()> create;
     float seedSize;     //!< KeyPoint::size for a ROS of radius SEED_RADIUS
-    std::string seeds;  //!< detector of the seed points: "FAST", or "AKAZE", "KAZE" that need their own
-    std::vector<std::string> extraNames;  //!< maps it is given besides the image
+    std::string seeds;  //!< detector of the seed points: "FAST"; AKAZE and KAZE need their own
+    std::vector<std::string> extraNames;  //!< maps that it uses besides the image
     bool oriented;                        //!< whether keypoints get an angle (robustness only)
 };
 
@@ -29,7 +29,7 @@ std::vector<Configuration> iibConfigurations();
 
 std::vector<Configuration> presetConfigurations();
 
-//! The presets that detected points are described with: those for any light or view at more than 60 bytes.
+//! The presets for detected points: those of more than 60 bytes for any illumination or view.
 std::vector<Configuration> generalPresets();
 
 //! The other descriptors that this OpenCV has, with the parameters OpenCV recommends, upright.
@@ -38,7 +38,7 @@ std::vector<Configuration> baselineConfigurations();
 //! Default IIB, upright and oriented, the presets, and for comparison ORB, SIFT, BEBLID, TEBLID and LATCH.
 std::vector<Configuration> robustnessConfigurations();
 
-//! An IIB extractor as IIBDescriptorExtractor::save wrote it, selection included; named by its file.
+//! An IIB extractor read from a file of IIBDescriptorExtractor::save, and named by the file.
 Configuration savedConfiguration(const std::string& file);
 
 //! Bytes of a descriptor.

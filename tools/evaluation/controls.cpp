@@ -63,8 +63,8 @@ Described rooted(Described sift)
 enum Which
 {
     ALL,
-    COUNTED,  // neighbours are counted for other numbers of points, too
-    NOISY     // poses are found with noise, too
+    COUNTED,  // those whose neighbours are also counted for other numbers of points
+    NOISY     // those whose poses are also estimated with noise
 };
 
 //! Each detector with the descriptors that are compared at its points.
@@ -132,8 +132,8 @@ struct Neighbours
     int visible, repeated, nearest;
 };
 
-/** Counts, by the known depths, the points of an image that the other image shows, those that were also detected there, and those
-whose nearest descriptor is there. */
+/** Counts points of an image by the known depths: those that the other image shows, those that were also detected there, and those
+whose nearest descriptor is at that place. */
 Neighbours neighboursOf(const ViewPair& pair, const Described& r, const Described& t, const cv::Mat& depth,
         const cv::Mat& targetDepth, double tolerance)
 {

@@ -11,7 +11,7 @@ namespace {
 
 const int THRESHOLDS = 32;
 
-//! The distance of unrelated descriptors: half of the bits differ, or a right angle.
+//! The distance of unrelated descriptors: half of the bits, or that of vectors at a right angle.
 double unrelated(const Described& d)
 {
     if (d.norm == cv::NORM_HAMMING)
@@ -22,7 +22,7 @@ double unrelated(const Described& d)
     return sum;
 }
 
-/** Right and all matches no farther apart than 1/32, 2/32 ... of the distance of unrelated descriptors, as "right:all",
+/** Numbers of right and all matches with a distance up to 1/32, 2/32 ... of that of unrelated descriptors, as "right:all",
 separated by blanks (paper, "Experiments Combined with Feature Detectors"). */
 std::string curve(const std::vector<cv::DMatch>& matches, const std::vector<bool>& correct, double largest)
 {
@@ -51,7 +51,7 @@ void evaluatePair(const Options& options, const ImagePair& pair, const std::vect
                                               described.get(detector, loaded.reference, pair.referenceFile),
                                       ofTarget = described.get(detector, loaded.target, pair.targetFile);
         const std::vector<Described>&reference = *ofReference, &target = *ofTarget;
-        // IIB, the last one, keeps every point.
+        // The last descriptor, IIB, keeps every point.
         const int correspondences = countCorrespondences(
                 reference.back().keypoints, target.back().keypoints, loaded.homography, options.tolerance);
         for (size_t i = 0; i < reference.size(); i++)

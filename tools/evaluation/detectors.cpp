@@ -14,7 +14,7 @@ namespace {
 
 typedef cv::Ptr<cv::Feature2D> Feature;
 
-//! Upright, without the copies that several orientations made, the strongest first and no more than count.
+//! Keeps the `count` strongest keypoints, upright, strongest first. Removes copies with several orientations.
 void selectStrongest(std::vector<cv::KeyPoint>& keypoints, int count)
 {
     for (cv::KeyPoint& keypoint : keypoints)
@@ -28,7 +28,7 @@ void selectStrongest(std::vector<cv::KeyPoint>& keypoints, int count)
     keypoints.resize(std::min(keypoints.size(), size_t(count)));
 }
 
-//! The descriptor may drop keypoints; the others are then given the same ones.
+//! A detector and its own descriptor. If this drops keypoints, the other descriptors do not get them either.
 Detector classic(const std::string& name, const std::string& descriptorName,
         const std::function<Feature()>& detector, const std::function<Feature()>& descriptor, int count)
 {
@@ -44,7 +44,7 @@ Detector classic(const std::string& name, const std::string& descriptorName,
     return {name, descriptorName, cv::iib::IIB::scaleFactorFor(name), detect, {}, "", {}};
 }
 
-//! Found on the locally normalized image; the plain image is described.
+//! Detects on the locally normalized image and describes the plain image.
 Detector normalized(const std::string& name, const std::string& descriptorName,
         const std::function<Feature()>& detector, const std::function<Feature()>& descriptor, int count)
 {
@@ -54,7 +54,7 @@ Detector normalized(const std::string& name, const std::string& descriptorName,
     return d;
 }
 
-//! The library's own, which describes nothing.
+//! HessianDetector, which has no descriptor of its own.
 Detector hessian(const std::string& name, int count)
 {
     const auto detect = [=](const cv::Mat& image, const std::string&) {
@@ -65,7 +65,7 @@ Detector hessian(const std::string& name, int count)
     return {name, "", cv::iib::IIB::scaleFactorFor("Hessian"), detect, {}, "", {}};
 }
 
-//! `<set>/<sequence>/<image>.csv` below the folder, for the image of that set and sequence.
+//! The list of an image's keypoints below a folder: `<set>/<sequence>/<image>.csv`.
 std::string keypointFile(const std::string& folder, const std::string& imageFile)
 {
     size_t start = imageFile.size();
@@ -75,7 +75,7 @@ std::string keypointFile(const std::string& folder, const std::string& imageFile
     return folder + name.substr(0, name.find_last_of('.')) + ".csv";
 }
 
-//! A detector whose keypoints, and descriptors if there are some, are in files.
+//! A detector whose keypoints are in files, perhaps with descriptors.
 Detector fromFiles(const std::string& folder, int count)
 {
     const auto detect = [=](const cv::Mat&, const std::string& imageFile) {
@@ -95,7 +95,7 @@ Detector fromFiles(const std::string& folder, int count)
     return {name, name, 1.f, detect, {}, trimmed, {}};
 }
 
-//! What people describe ORB's points with instead; the patches that have a fixed size are of about ORB's.
+//! Other descriptors of ORB's points; those with a fixed patch have about the size of ORB's.
 std::vector<Configuration> othersOnORB()
 {
     std::vector<Configuration> others;
@@ -139,7 +139,7 @@ std::vector<Detector> classicDetectors(int count)
     return all;
 }
 
-//! What describes a detector's points, but for its own descriptor: the others, the presets, and last the default.
+//! The descriptors of a detector's points except its own: Detector::others, the presets, and last the default.
 std::vector<Configuration> describersOf(const Detector& detector)
 {
     std::vector<Configuration> all = detector.others;
@@ -196,7 +196,8 @@ std::vector<Described> describeAll(const Detector& detector, const cv::Mat& imag
         const Feature feature = c.create();
         const cv::Ptr<cv::iib::IIB> iib = feature.dynamicCast<cv::iib::IIB>();
         if (iib)
-            iib->setScaleFactor(iib->getScaleFactor() * detector.scaleFactor);  // a preset may look wider
+            iib->setScaleFactor(
+                    iib->getScaleFactor() * detector.scaleFactor);  // a preset may have a wider region
         Described d = {
                 c.name, detection.keypoints, cv::Mat(), feature->defaultNorm(), descriptorBytes(*feature)};
         feature->compute(image, d.keypoints, d.descriptors);

@@ -19,15 +19,15 @@ const double THRESHOLDS[] = {.75, 1};  // of MAGSAC, pixels
 const char LAST[] = "findRelativePose", UNIVERSAL[] = "IIB UNIVERSAL";
 const int LIGHTS = 3;
 
-//! Two views, and which of three other lights the second image is put into; -1: as it is.
+//! Two views, and the artificial illumination of the second image, 0 to 2; -1: none.
 struct LitPair
 {
     ViewPair views;
     int light;
 };
 
-/** A grey image in another light: darker from left to right with deep shadows; bright; or dark from above; each with a
-sensor's noise. */
+/** Changes the illumination of a grey image and adds a sensor's noise.
+@param light 0: darker from left to right with deep shadows; 1: bright; 2: dark from above. */
 cv::Mat relit(const cv::Mat& image, int light)
 {
     const struct
@@ -48,7 +48,7 @@ cv::Mat relit(const cv::Mat& image, int light)
     return bytes;
 }
 
-//! Adds to each pair in one light the same in another, whose set ends in " relit".
+//! Adds a pair with changed illumination, in the set "... relit", for each pair under one illumination.
 std::vector<LitPair> withRelit(const std::vector<ViewPair>& pairs)
 {
     std::vector<LitPair> all;
@@ -64,7 +64,7 @@ std::vector<LitPair> withRelit(const std::vector<ViewPair>& pairs)
     return all;
 }
 
-//! The name under which DescribedImages keeps a rotated or relit image.
+//! The name of a rotated or relit image in DescribedImages.
 std::string asTurned(const std::string& file, int turns, int light)
 {
     return cv::format("%s turned %d lit %d", file.c_str(), turns, light);
@@ -86,7 +86,7 @@ std::string numbers(const ViewPair& pair, const Points& points)
     return out;
 }
 
-//! The detectors, each with its own descriptor, if it has one, and with UNIVERSAL.
+//! The detectors, each with its own descriptor and with UNIVERSAL.
 std::vector<Detector> describedByTwo(Options options)
 {
     if (options.detectors.empty())
@@ -97,7 +97,7 @@ std::vector<Detector> describedByTwo(Options options)
     return all;
 }
 
-//! Pairs of the lists, whose images are below the first root; without lists those of the roots.
+//! Pairs of the lists, whose images are below the first root; without lists, the pairs below all roots.
 std::vector<ViewPair> viewPairs(const Options& options)
 {
     if (options.pairs.empty())

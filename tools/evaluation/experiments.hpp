@@ -11,7 +11,7 @@ namespace iib_tools {
 struct Options
 {
     std::vector<std::string> roots;        //!< folders of sequences
-    std::string out;                       //!< folder of the results, made if need be
+    std::string out;                       //!< folder of the results, made if it is missing
     int points = 1000;                     //!< keypoints an image
     double tolerance = 3;                  //!< pixels
     std::vector<std::string> experiments;  //!< names of experiments to run; empty: all

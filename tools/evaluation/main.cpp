@@ -51,7 +51,7 @@ int run(const CommandLine& line)
     return 0;
 }
 
-//! Keeps OpenCV from writing exceptions to stderr, which are reported in one line here.
+//! Keeps OpenCV from writing exceptions to stderr; they are reported in one line here.
 int quiet(int, const char*, const char*, const char*, int, void*) { return 0; }
 
 }  // namespace

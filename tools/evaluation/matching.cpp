@@ -19,7 +19,7 @@ struct Matcher
     cv::Ptr<cv::DescriptorMatcher> matcher;
 };
 
-//! Brute force and the thresholds of the paper's figure, as shares of each level's bits; and the module's other modes.
+//! Brute force, the module's modes, and the thresholds of the paper's figure as shares of each level's bits.
 std::vector<Matcher> matchers(const std::vector<int>& levels)
 {
     std::vector<Matcher> all = {{"BFMatcher", cv::BFMatcher::create(cv::NORM_HAMMING, true)},
@@ -32,7 +32,7 @@ std::vector<Matcher> matchers(const std::vector<int>& levels)
     return all;
 }
 
-//! Milliseconds of one call of each, which take turns.
+//! Milliseconds of one call of each matcher; they take turns.
 std::vector<double> times(const std::vector<Matcher>& all, const cv::Mat& query, const cv::Mat& train)
 {
     std::vector<double> least(all.size(), DBL_MAX);

@@ -18,7 +18,7 @@ const double CONFIDENCE = 0.9999;
 const float RATIO_IIB = 0.92f, RATIO_BITS = 0.9f, RATIO_FLOAT = 0.8f;  // nearest distance over the second
 const double FAILED = std::numeric_limits<double>::infinity();
 
-//! Pixel to direction in the camera's axes, third coordinate 1.
+//! Converts pixels to directions in the camera's axes, third coordinate 1.
 std::vector<cv::Point2d> normalizedPoints(const std::vector<cv::Point2d>& points, const cv::Matx33d& camera)
 {
     std::vector<cv::Point2d> rays;
@@ -128,7 +128,7 @@ Points refined(const cv::Mat& referenceImage, const cv::Mat& targetImage, std::v
     std::vector<cv::KeyPoint> first = reference.keypoints, second = target.keypoints;
     for (std::vector<cv::KeyPoint>* keypoints : {&first, &second})
         for (cv::KeyPoint& keypoint : *keypoints)
-            keypoint.angle = -1;  // described upright
+            keypoint.angle = -1;  // upright
     cv::Mat moved1, moved2;
     if (propagated)
         cv::iib::propagateMatches(referenceImage, first, targetImage, second, matches, moved1, moved2);

@@ -10,20 +10,20 @@
 
 namespace iib_tools {
 
-//! Matches' points, pixels.
+//! The points of matches, pixels.
 struct Points
 {
     std::vector<cv::Point2d> reference, target;
 };
 
-//! What an estimate from matches errs, infinite where there is none, and how many of them agree with it.
+//! The error of an estimated pose (infinite without a pose) and its number of inliers.
 struct Outcome
 {
     double error;
     int inliers;
 };
 
-//! Mutual nearest neighbours, and their distances over those of the second neighbours.
+//! Mutual nearest neighbours. @param ratios receives each distance over that of the second neighbour
 std::vector<cv::DMatch> mutualMatches(
         const Described& reference, const Described& target, std::vector<float>& ratios);
 std::vector<cv::DMatch> underRatio(
@@ -31,24 +31,24 @@ std::vector<cv::DMatch> underRatio(
 //! Mutual nearest neighbours under a ratio: .92 for IIB, .9 for other bits, .8 for numbers.
 std::vector<cv::DMatch> mutualRatioMatches(const Described& reference, const Described& target);
 Points pointsOf(const std::vector<cv::DMatch>& matches, const Described& reference, const Described& target);
-//! The same with the target's points refined, and with the matches that these lead to if they are propagated.
+//! As pointsOf, with refined points. @param propagated also adds propagated matches
 Points refined(const cv::Mat& referenceImage, const cv::Mat& targetImage, std::vector<cv::DMatch> matches,
         const Described& reference, const Described& target, bool propagated);
 
 Outcome byFindRelativePose(const Points& points, const ViewPair& pair);
 Outcome byMagsac(const Points& points, const ViewPair& pair, double threshold);
 
-//! Two images matched from their pixels on, as one would match a single pair.
+//! A method that matches two images from their pixels.
 struct PairMethod
 {
     std::string name;
     bool slow;  //!< takes many seconds a pair
-    //! Matched points of two CV_8UC1 images; whether the method calls them significant, which matchViews alone decides.
+    //! Matches two CV_8UC1 images. Returns whether the matches are significant; only matchViews returns false.
     std::function<bool(const cv::Mat&, const cv::Mat&, Points&)> match;
 };
 
-/** matchViews; the recommended chain, upright and propagated; SIFT and ORB, mutual under a ratio, with so many points an image; and
-SIFT with so many points in each view of cv::AffineFeature. */
+/** matchViews; the recommended chain, upright and propagated; SIFT and ORB, mutual under a ratio; and SIFT with cv::AffineFeature.
+@param points of an image, or of a view of cv::AffineFeature. */
 std::vector<PairMethod> pairMethods(int points);
 
 }  // namespace iib_tools

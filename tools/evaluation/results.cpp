@@ -41,7 +41,7 @@ std::vector<Fields> readRows(const std::string& file, const Fields& columns)
     if (std::getline(in, line) && splitFields(line) != columns)
         CV_Error(cv::Error::StsParseError,
                 file + ": has other columns; move it away or choose another folder");
-    while (std::getline(in, line) && !in.eof())  // a whole line ends in a line end
+    while (std::getline(in, line) && !in.eof())  // a complete line ends in a line end
         rows.push_back(splitFields(line));
     for (const Fields& row : rows)
         if (row.size() != columns.size())

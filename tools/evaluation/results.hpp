@@ -64,8 +64,8 @@ struct Task
     std::function<void()> run;
 };
 
-/** Runs the tasks on cv::getNumThreads() threads and reports every tenth of them on stderr. Reports and counts a task that throws,
-and continues with the others.
+/** Runs the tasks on cv::getNumThreads() threads and reports progress on stderr, ten times in all. A task that throws is reported and
+counted, and the others continue.
 @return the number of failed tasks. */
 int runTasks(const std::string& title, const std::vector<Task>& tasks);
 

@@ -29,8 +29,8 @@ std::vector<cv::KeyPoint> detectSeeds(const std::string& name, const cv::Mat& im
     return keypoints;
 }
 
-/** Local binary patterns (Ojala, Pietikainen and Maenpaa 2002, radius 1), as the number of the eight neighbours that are no darker
-than the pixel, whose means are meaningful. */
+/** Local binary patterns (Ojala, Pietikainen and Maenpaa 2002, radius 1): the number of the eight neighbours that are no darker than
+the pixel. Unlike the patterns' bits, this number has a meaningful mean. */
 cv::Mat localBinaryPatterns(const cv::Mat& image)
 {
     cv::Mat around, patterns = cv::Mat::zeros(image.size(), CV_8U);
@@ -66,8 +66,8 @@ void matchSeeds(const Options& options, const LoadedPair& images,
     }
 }
 
-/** Plans a row for each configuration that has none yet: the mutual matches of its descriptors at its seeds. Every seed is a
-correspondence, whether the descriptor kept it or not.
+/** Plans a row with the mutual matches at the seeds, for each configuration without one. Every seed is a correspondence, even if the
+descriptor dropped it.
 @param key set, sequence, target and kind. @param load reads the images. */
 void planSeeded(const Options& options, const Fields& key, const std::vector<Configuration>& configurations,
         const std::function<LoadedPair()>& load, Experiment& experiment)

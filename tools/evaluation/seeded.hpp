@@ -18,7 +18,7 @@ class SeedSource
 public:
     SeedSource(const cv::Mat& reference, int count) : reference_(reference), count_(count) {}
 
-    //! At most `count` points that a target shows, with the configuration's seedSize unless that is 0.
+    //! At most `count` points inside a target, with the configuration's seedSize unless that is 0.
     SeedPoints seeds(const Configuration& configuration, cv::Size targetSize, const cv::Matx33d& homography);
 
 private:
@@ -27,7 +27,7 @@ private:
     std::map<std::string, std::vector<cv::KeyPoint>> points_;  // by detector
 };
 
-//! Describes an image's points, and removes points that the descriptor drops. @param maps those of extraNames
+//! Describes an image's points, and removes points that the descriptor drops. @param maps of Configuration::extraNames
 cv::Mat describe(const Configuration& configuration, const cv::Mat& image,
         const std::map<std::string, cv::Mat>& maps, std::vector<cv::KeyPoint>& points);
 

@@ -12,7 +12,7 @@
 namespace iib_tools {
 namespace {
 
-const int THRESHOLDS = 20;  // 0 to 19 pixels, as wxbs_benchmark has them
+const int THRESHOLDS = 20;  // 0 to 19 pixels, as in wxbs_benchmark
 
 Points readCorrespondences(const std::string& file)
 {
@@ -35,7 +35,7 @@ Points readCorrespondences(const std::string& file)
     return points;
 }
 
-//! The fundamental matrix by the settings of WxBS's own example; empty for fewer than eight matches.
+//! The fundamental matrix, with the settings of WxBS's own example; empty for fewer than eight matches.
 cv::Mat fundamental(const Points& points)
 {
     return points.target.size() < 8 ? cv::Mat()

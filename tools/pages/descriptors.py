@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 
-"""What the page shows of a descriptor besides its results."""
+"""How the pages present each descriptor."""
 
-# Descriptors of the main table in its order, those of them that were measured, by whose code they are: the name in the results of
-# fixed points, and whose points they are shown with where these are detected.
+# Descriptors of the main table in its order, if they were measured, by the origin of their code. For each: the name in the results of
+# fixed points, and the detector that it is shown with in the results of detected points.
 ORB, HESSIAN, OWN = "ORB", "Hessian", ""
 SHOWN = {
     "Apache-2.0": {"IIB": ORB, "IIB ACCURATE": ORB, "IIB COMPACT": ORB, "IIB BALANCED": ORB, "IIB VIEWPOINT": ORB,
@@ -15,33 +15,33 @@ SHOWN = {
     "not free": {"SURF": OWN}}
 NOT_LEARNED = {"IIB", "BRISK", "AKAZE-486", "KAZE", "SIFT", "BRIEF-512", "DAISY", "SURF"}
 
-# What changes besides light, kinds of change first, as the page calls it.
+# Changes other than illumination, first by kind, with their names on the page.
 CHANGES = {"viewpoint": "other viewpoint", "zoom": "zoom and rotation", "blur": "blur", "jpeg": "compression"}
 
-# Those that the table of moved cameras and blur compares.
+# Descriptors in the table of moved cameras and blur.
 COMPARED = ("IIB", "IIB COMPACT", "IIB BALANCED", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB", "BRISK", "SIFT", "AKAZE-486",
             "BEBLID-512", "TEBLID-512", "LATCH-512")
 
-# Learned descriptors that come with their own points and are entered in learned.csv: licence of the weights.
+# Learned descriptors with their own points, entered in learned.csv: licence of the weights.
 NETWORKS = {"XFeat": "Apache-2.0", "SuperPoint": "noncommercial research only", "ALIKE-n": "BSD-3-Clause", "ALIKED-n16": "BSD-3-Clause"}
 
-# Lines of the table of turned and scaled images.
+# Rows of the table of rotated and scaled images.
 WARPED = ("IIB", "IIB oriented", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB oriented", "SIFT", "SIFT oriented", "BEBLID-512", "TEBLID-512", "LATCH-512")
 
-# Rows of poses: points of a detector and what describes them, as people call them.
+# Rows of the tables of poses: detector and descriptor, and their usual names.
 POSES = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("SIFT normalized", "SIFT"): "SIFT normalized",
          ("SIFT normalized", "IIB UNIVERSAL"): "SIFT normalized, IIB UNIVERSAL",
          ("SIFT", "SIFT"): "SIFT", ("AKAZE", "AKAZE"): "AKAZE", ("ORB", "ORB"): "ORB"}
 
-# Whose matches the slider draws.
+# Methods whose matches the slider draws.
 METHODS = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("AKAZE", "IIB"): "IIB at AKAZE's points", ("AKAZE", "AKAZE"): "AKAZE",
            ("ORB", "ORB"): "ORB", ("BRISK", "BRISK"): "BRISK", ("ORB", "BEBLID-512"): "BEBLID at ORB's points",
            ("SIFT", "SIFT"): "SIFT"}
 
-# The paper's nine detectors as far as they, or the next of their kind, can be had.
+# The paper's nine detectors, as far as they or close relatives are available.
 SUITS = ("AKAZE", "ORB", "BRISK", "SIFT", "SURF", "KAZE", "superpoint", "alike-n", "aliked-n16", "xfeat")
 
-# Pairs of the slider by their second image: title, and what is to be said of it.
+# Pairs of the slider by their second image: title and caption.
 SCENES = {
     "view_overcast": ("street, sun and clouds", "The light is much the same, and soft: what the paper's first picture shows beside the next scene."),
     "night": ("street, noon and night", "The light comes from lamps and windows in place of the sun."),
@@ -50,4 +50,4 @@ SCENES = {
     "view_panned": ("street, noon and dusk, camera turned", "The camera turned by ten degrees to the left and three upwards."),
     "facade_turned": ("a failure: turned by 40 degrees",
                       "The camera is turned between noon and dusk. All are described upright here, and hardly anything is left. "
-                      "matchRotated() is for such images: it finds the turn and describes the second image anew.")}
+                      "matchRotated() is for such images: it finds the turn and describes the second image again.")}

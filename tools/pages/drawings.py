@@ -5,7 +5,7 @@ from matplotlib.patches import Rectangle
 from charts import GREY, RED, plt, svg
 
 HEIGHT, WIDTH = 16, 24
-SIDE, LEFT, TOP = 8, 8, 2  # of the quad that is looked at
+SIDE, LEFT, TOP = 8, 8, 2  # of the magnified quad
 
 
 def scene():
@@ -44,13 +44,13 @@ def axes(columns, rows=1, size=2.4):
 
 
 def picture(axis, image, title, grey=None):
-    """One square a pixel, black to white between its least and largest value, or between those of grey values."""
+    """One square a pixel, black to white from the least to the largest value, or in the range of grey values."""
     axis.imshow(image, 'gray', vmin=grey and 0, vmax=grey, interpolation='none')
     axis.set_title(title, fontsize=10)
 
 
 def squares(axis, left, top, side, count, **style):
-    """The cells of a square, so many a side."""
+    """The grid of a square's cells."""
     for y, x in np.ndindex(count, count):
         axis.add_patch(Rectangle((left + x * side / count, top + y * side / count), side / count, side / count, **{'fill': False, 'edgecolor': RED, **style}))
 
@@ -104,7 +104,7 @@ def bit_rules():
 
 
 def channels():
-    """The four channels of the default descriptor, and three that may come to them."""
+    """The four channels of the default descriptor, and three possible extra channels."""
     figure, all_axes = axes(4, 2, 2.2)
     padded = np.pad(DAY, 1, mode='edge')
     texture = sum((padded[1 + j:1 + j + HEIGHT, 1 + i:1 + i + WIDTH] >= DAY).astype(int) for i in (-1, 0, 1) for j in (-1, 0, 1)) - 1

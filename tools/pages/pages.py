@@ -51,7 +51,7 @@ def localization_page(folder):
 
 
 def markdown():
-    """Pages with tables, filled anew."""
+    """Pages with tables, filled with current figures."""
     pages, used = {}, set()
     figures = {'%s.%s' % (group, name): value for group, make in tables.FIGURES.items() for name, value in make().items()}
     for page in [ROOT / 'README.md', *sorted((ROOT / 'doc').rglob('*.md')), *sorted((ROOT / 'upstream').glob('*.md'))]:

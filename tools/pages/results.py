@@ -14,7 +14,7 @@ def number(row, column):
 
 
 def describing_times():
-    """Milliseconds for 1000 points by scripts/bench.sh, by the evaluation's names of configurations."""
+    """Milliseconds for 1000 points, measured by scripts/bench.sh, by the evaluation's names of configurations."""
     return {name.replace("default", "IIB").replace("PRESET_", "IIB "): ms(test, name, 1000).iloc[0] for test in DESCRIBED for name in methods(test)}
 
 

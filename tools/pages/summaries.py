@@ -195,7 +195,7 @@ def summarize(source, target, groups_of, keys, values, *commit):
         every = [pair for scene in scenes.values() for pair in scene]
         ends = interval([[pair[-1] for pair in scene] for scene in scenes.values()])
         line = [*key, str(len(every)), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends), *commit]
-        if lines.get(key, [])[:-1] != line[:-1] or not commit:  # what was not measured again keeps its commit
+        if lines.get(key, [])[:-1] != line[:-1] or not commit:  # files that were not measured again keep their commit
             lines[key] = line
     write(target, ['place', *keys, 'pairs', *values, 'low', 'high', *['commit'] * len(commit)], (lines[key] for key in sorted(lines)))
 

@@ -199,7 +199,7 @@ GROUPS = {'natural': '%s pairs of photographs', 'light': '%s of them, of other s
 
 
 def paper_orders():
-    """Whether the orders of the paper's tables hold for our figures, in each group of pairs. Differences below .01 count as level."""
+    """Whether the orders of the paper's tables hold for our figures, in each group of pairs. Differences below .01 count as equal."""
     found = {place: summaries.by(rows('fixed_points.csv'), 'configuration', place=place) for place in GROUPS}
 
     def line(statement, column, groups, margin=0):
@@ -395,7 +395,7 @@ def sure_figures():
 
 
 def uncertainty():
-    """How many pairs have an answer, how many errors are within the limits, the reported deviation and the logarithmic score."""
+    """Number of pairs with a result, share of errors within the limits, reported deviation and logarithmic score."""
     def cells(row):
         inside = ('%.0f' % (100 * float(row[level])) if row[level] else '–' for level in ('0.5', '0.95', '0.99'))
         return [*inside, *('%.2g' % float(row[name]) if row.get(name) else '–' for name in ('deviation', 'score'))]

@@ -62,7 +62,7 @@ __attribute__((target("xsave"))) unsigned upperHalvesInUse() { return (unsigned)
 TEST(IIB_InstructionSets, calls_leave_no_upper_halves_in_use)
 {
     if (!tellsWhatIsInUse())
-        throw SkipTestException("the processor does not tell which parts of its registers are in use");
+        throw SkipTestException("the processor does not report which parts of its registers are in use");
     const Mat image = texture(Size(160, 120), CV_8U, 1);
     std::vector<KeyPoint> keypoints = {KeyPoint(60, 60, 20), KeyPoint(80, 50, 20, 30)};
     Mat descriptors;
@@ -80,7 +80,7 @@ TEST(IIB_InstructionSets, calls_leave_no_upper_halves_in_use)
 }
 #endif
 
-// Else runs under pins would all test the same kernels.
+// If pins did not work, runs under pins would all test the same kernels.
 TEST(IIB_InstructionSets, pins_work)
 {
     const char* pin = getenv("OPENCV_CPU_DISABLE");

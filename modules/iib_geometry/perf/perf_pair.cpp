@@ -30,7 +30,7 @@ PERF_TEST_P(IIB_Pair, pose, testing::Combine(testing::Values(1000, 2000, 4000), 
     SANITY_CHECK_NOTHING();
 }
 
-//! ORB's points and codes of the two images alone: what the time is compared with.
+//! Only ORB's points and codes of the two images, for comparison.
 PERF_TEST_P(IIB_Pair, orb, testing::Combine(testing::Values(1000, 2000, 4000), testing::Values(1, 2)))
 {
     const Mat images[] = {picture("moved_noon"), picture("moved_night")};
@@ -46,7 +46,7 @@ PERF_TEST_P(IIB_Pair, orb, testing::Combine(testing::Values(1000, 2000, 4000), t
 
 typedef perf::TestBaseWithParam<int> IIB_PairPose;  // points
 
-//! The pose alone, of propagated matches.
+//! Only the pose, from propagated matches.
 PERF_TEST_P(IIB_PairPose, findRelativePose, testing::Values(1000, 2000, 4000))
 {
     PicturePair pair(GetParam());

@@ -32,7 +32,7 @@ PERF_TEST(RelativePose, findRelativePose)
     SANITY_CHECK_NOTHING();
 }
 
-//! OpenCV's own, which is to beat.
+//! OpenCV's own estimator, for comparison.
 PERF_TEST(RelativePose, findEssentialMat_MAGSAC)
 {
     Mat points1, points2, R, t;

@@ -61,7 +61,7 @@ class SettingsChanged(ValueError):
 
     def __init__(self, path: str, differences: str) -> None:
         """:param differences: names of settings, each with both values."""
-        super().__init__(f'{path} was begun with other settings ({differences}): use these again, or begin anew with force (--force)')
+        super().__init__(f'{path} was begun with other settings ({differences}): use them again, or start a new database with force (--force)')
 
 
 def check_settings(path: str, old: dict[str, Any], new: dict[str, Any]) -> None:

@@ -168,8 +168,8 @@ def describe_again(database: Database, folder: str, names: Sequence[str], option
     described = in_parallel(functools.partial(describe_image, os.path.abspath(folder), options), missing, pool)
     for name, result in with_progress(described, 'describing again', len(missing)):
         if not database.add_codes(without[name], *result[:2]):
-            raise ValueError(f'{name} has other points than when the database was made, by another version of OpenCV perhaps: begin anew with '
-                             'force (--force)')
+            raise ValueError(f'{name} has other points than when the database was made, by another version of OpenCV perhaps: start a new '
+                             'database with force (--force)')
 
 
 def list_pairs(database: Database, folder: str, names: Iterable[str], options: Options, level_sizes: tuple[int, ...]) -> Pairs:

@@ -55,7 +55,7 @@ class Localizer:
     def __init__(self, map: Path, points: int = 1000, lines: bool = False) -> None:
         """Reads a map.
         :param map: its folder.
-        :param points: keypoints of an image; 0: as many as in the map's images, which takes twice the time and finds more in hard light.
+        :param points: keypoints of an image; 0: as many as in the map's images, which takes twice the time and finds more under difficult illumination.
         :param lines: refine poses by lines too; the map must have been made with them.
         :raises opencv_iib.error: for a folder without a map, and a damaged map; with `lines`, for a map without lines, and a build without
             OpenCV's module line_descriptor."""

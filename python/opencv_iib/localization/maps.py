@@ -1,4 +1,4 @@
-"""Makes maps of COLMAP models and their images, and updates maps with images in other light."""
+"""Makes maps of COLMAP models and their images, and updates maps with images under changed illumination."""
 from __future__ import annotations
 
 import os
@@ -124,7 +124,7 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
 def update(map: Path, images: Path, camera: Optional[AnyCamera] = None, out: Optional[Path] = None,
            workers: Optional[int] = None, force: bool = False, log: Callable[[str], None] = note, exif: bool = True,
            mask: Optional[Path] = None, max_size: int = 0) -> dict[str, int]:
-    """Localizes the images below a folder, and adds those in new light to the map.
+    """Localizes the images below a folder, and adds those under new illumination to the map.
 
     Points of added images are matched with each other and the map, and triangulated. The size of a map is bounded: codes that eight
     updates in a row did not find are dropped. If a place has more than eight added images, the one that has not helped for longest is dropped.

@@ -51,7 +51,7 @@ TEST(Controls, neighbours_by_known_depth)
     options.out = folder.path("out");
     EXPECT_EQ(0, evaluate(options));
     const auto found = neighboursIn(options.out);
-    EXPECT_EQ(12u + 3 * 3, found.size());  // twelve methods, three of them by other numbers of points
+    EXPECT_EQ(12u + 3 * 3, found.size());  // twelve methods, three of them for other numbers of points too
     for (const char* method : {"Hessian IIB UNIVERSAL 200", "Hessian SIFT 200",
                  "SIFT normalized RootSIFT 200", "SIFT CLAHE SIFT 200"})
     {
@@ -73,7 +73,7 @@ TEST(Controls, neighbours_by_known_depth)
     EXPECT_EQ(5u, ratios.size());
     EXPECT_EQ(5 * (12u + 3), rows);  // three methods with noise
 
-    // By a wrong depth no neighbour is right, and a farther wall in one image hides every point.
+    // With a wrong depth no neighbour is right. A more distant wall in one image hides every point.
     cv::imwrite(folder.path("wall_2/map/depth/a.png"), cv::Mat(192, 320, CV_16U, cv::Scalar(300)));
     cv::imwrite(folder.path("wall_2/map/depth/b.png"), cv::Mat(192, 320, CV_16U, cv::Scalar(300)));
     options.out = folder.path("wrong");

@@ -28,7 +28,7 @@ struct Camera
     }
 };
 
-//! Small textures at points of space, the nearest in front; the same ones for every camera.
+//! Renders small textures at fixed points of space, the nearest in front.
 cv::Mat rendered(const Camera& camera, double brightness)
 {
     cv::RNG rng(3);
@@ -50,7 +50,7 @@ cv::Mat rendered(const Camera& camera, double brightness)
     return image;
 }
 
-//! Errors of AKAZE's and UNIVERSAL's matches, plain, refined and propagated, by all estimators, in each of so many lights.
+//! Errors of all estimators with AKAZE's and UNIVERSAL's matches, plain, refined and propagated, for each illumination.
 std::map<std::string, double> errorsOfPoses(const Options& options, size_t lights = 2)
 {
     std::map<std::string, double> found;
@@ -98,7 +98,7 @@ TEST_F(Estimators, pose_of_two_views)
     {
         const bool relit = error.first.find("relit") != std::string::npos,
                    ours = error.first.find("find") != std::string::npos;
-        // Of AKAZE's few matches of the relit pair OpenCV 4.10's MAGSAC finds the opposite direction.
+        // From AKAZE's few matches of the relit pair, OpenCV 4.10's MAGSAC finds the opposite direction.
         const bool opposite = CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR >= 10 && relit &&
                               error.first.find("AKAZE") != std::string::npos &&
                               error.first.find("MAGSAC") != std::string::npos;
@@ -108,7 +108,7 @@ TEST_F(Estimators, pose_of_two_views)
         }
     }
 
-    // A wrong truth is a large error.
+    // A wrong ground truth gives a large error.
     folder.write("data/walk/poses.txt", "a 0 0 0 0 0 0 1\nb 0 0.6 0 0 0.3826834 0 0.9238795\n");
     options.out = folder.path("wrong");
     EXPECT_EQ(0, evaluate(options));
@@ -123,7 +123,7 @@ TEST_F(Estimators, pose_of_two_views)
         EXPECT_EQ(HUGE_VAL, error.second) << error.first;
 }
 
-//! The second camera was turned by a quarter clockwise; in the other list its image is matched as it is.
+//! The second camera was rotated a quarter clockwise. One list says so; with the other one its image is matched as it is.
 TEST_F(Estimators, pairs_of_lists)
 {
     options.roots = {folder.path("")};
@@ -148,13 +148,13 @@ TEST_F(Estimators, pairs_of_lists)
     folder.write("as_they_are.txt",
             "a_turned.png b.png 0 0 " + numbers("400 0 179 0 400 240 0 0 1", R * quarter.t()));
     const int threads = cv::getNumThreads();
-    cv::setNumThreads(1);             // so that what was described for one list is there for the next
-    EXPECT_EQ(1, evaluate(options));  // a file that is not there
+    cv::setNumThreads(1);             // so that descriptions for one list are cached for the next
+    EXPECT_EQ(1, evaluate(options));  // one file is missing
     cv::setNumThreads(threads);
     for (const auto& error : errorsOfPoses(options, 2))
     {
         EXPECT_EQ(0u, error.first.find("list ")) << error.first;
-        // Of AKAZE's few matches OpenCV 4.10's MAGSAC errs by 13 degrees; a turn of another image by 80 and more.
+        // With AKAZE's few matches, OpenCV 4.10's MAGSAC errs by 13 degrees; a wrong rotation of an image gives 80 and more.
         const bool few = CV_VERSION_MAJOR == 4 && CV_VERSION_MINOR >= 10 &&
                          error.first.find("AKAZE plain MAGSAC") != std::string::npos;
         EXPECT_LT(error.second, error.first.find("find") != std::string::npos ? 4
@@ -186,7 +186,7 @@ TEST(DescribedImages, the_last_ones_are_kept)
     EXPECT_EQ(1, detectionsAfter("a"));
     EXPECT_EQ(1, detectionsAfter("a"));
     EXPECT_EQ(2, detectionsAfter("b"));
-    EXPECT_EQ(3, detectionsAfter("c"));  // a leaves
+    EXPECT_EQ(3, detectionsAfter("c"));  // a is dropped from the cache
     EXPECT_EQ(3, detectionsAfter("b"));
     EXPECT_EQ(4, detectionsAfter("a"));
     detector.name = "other";

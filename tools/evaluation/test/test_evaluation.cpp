@@ -23,14 +23,14 @@ std::string contents(const std::string& file)
     return std::string((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
 }
 
-//! The number that follows `start` in a table, -1 without it.
+//! The number after `start` in a table, -1 if there is none.
 int valueAfter(const std::string& table, const std::string& start)
 {
     const size_t at = table.find("\n" + start);
     return at == std::string::npos ? -1 : std::atoi(table.c_str() + at + 1 + start.size());
 }
 
-//! Two sequences of random blocks under changing light: a still camera with depth, and one that shifts.
+//! Two sequences of random blocks under changed illumination: a static camera with depth, and one that shifts.
 class EvaluationTest : public ::testing::Test
 {
 protected:
@@ -92,7 +92,7 @@ protected:
 
 TEST_F(EvaluationTest, whole_run_and_its_repetition)
 {
-    if (const char* kept = std::getenv("IIB_EVALUATION_RESULTS"))  // for the test of the report
+    if (const char* kept = std::getenv("IIB_EVALUATION_RESULTS"))  // the test of the report reads them
     {
         options.out = kept;
         cv::utils::fs::remove_all(kept);
@@ -133,7 +133,7 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
     std::vector<std::string> first;
     for (const std::string& name : tables)
         first.push_back(contents(options.out + "/" + name + ".csv"));
-    EXPECT_EQ(0, evaluate(options));  // nothing is left to do, and nothing changes
+    EXPECT_EQ(0, evaluate(options));  // a second run changes nothing
     for (size_t i = 0; i < tables.size(); i++)
         EXPECT_EQ(first[i], contents(options.out + "/" + tables[i] + ".csv")) << tables[i];
     for (const char* picture : {"1", "2"})
@@ -185,7 +185,7 @@ TEST_F(EvaluationTest, points_are_of_the_detectors_asked_for)
     evaluate(options);
     const std::string whole = contents(options.out + "/detected_points.csv");
     EXPECT_GT(valueAfter(whole, "set,still,2,FAST normalized,ORB,light,32,"), 0);
-    EXPECT_EQ(0, valueAfter(whole, "set,still,3,FAST,ORB,light,32,"));  // nothing is seen in the third image
+    EXPECT_EQ(0, valueAfter(whole, "set,still,3,FAST,ORB,light,32,"));  // the third image shows nothing
     EXPECT_EQ(std::string::npos, whole.find(",SIFT,"));
     EXPECT_GT(valueAfter(whole, "set,still,2,FAST normalized,IIB UNIVERSAL,light,128,"), 20);
 }
@@ -231,7 +231,7 @@ TEST_F(EvaluationTest, keypoints_of_files_are_described)
     const std::string file = options.out + "/detected_points.csv";
     EXPECT_EQ(40, valueAfter(contents(file), "set,still,2,network,network,light,8,"));
     EXPECT_GT(valueAfter(contents(file), "set,still,2,network,IIB,light,170,"), 30);
-    // Of equal descriptors all are right at the least threshold.
+    // All equal descriptors are right at the smallest threshold.
     EXPECT_NE(std::string::npos, contents(file).find("network,network,light,8,40,40,40,1,1,40:40 40:40"));
     EXPECT_EQ(std::string::npos, contents(file).find("v_shift,2,network"));
 
@@ -244,7 +244,7 @@ TEST_F(EvaluationTest, keypoints_of_files_are_described)
     EXPECT_NE(std::string::npos, without.find("network,IIB,light,170,"));
 }
 
-//! Blocks before a wall, which a step to the side moves by other amounts: epipolar lines are rows.
+//! Blocks before a wall. The camera steps to the side, so epipolar lines are rows.
 TEST_F(EvaluationTest, correspondences_by_hand_are_judged_by_epipolar_lines)
 {
     folder.makeFolder("marked/WGBS/blocks");
@@ -270,13 +270,13 @@ TEST_F(EvaluationTest, correspondences_by_hand_are_judged_by_epipolar_lines)
     const std::vector<Fields> rows = readRows(options.out + "/wxbs.csv",
             {"set", "sequence", "method", "points", "found", "matches", "within_10", "share"});
     ASSERT_EQ(4u, rows.size());
-    for (const Fields& row : rows)  // half of them are right, to a pixel or two of 19
+    for (const Fields& row : rows)  // half are right to a pixel or two, of thresholds up to 19
     {
         EXPECT_EQ("0.5", row[6]) << row[2];
         EXPECT_GE(std::atof(row[7].c_str()), .42) << row[2];
         EXPECT_LT(std::atof(row[7].c_str()), .5) << row[2];
     }
-    options.experiments = {"fixed_points"};  // others take no image for one of a still camera
+    options.experiments = {"fixed_points"};  // which must ignore these images
     options.out = folder.path("others");
     EXPECT_EQ(0, evaluate(options));
     EXPECT_TRUE(fixedPointsRows().empty());
@@ -284,7 +284,7 @@ TEST_F(EvaluationTest, correspondences_by_hand_are_judged_by_epipolar_lines)
     folder.write("marked/WGBS/blocks/corrs.txt", "100 60 90\n");
     options.experiments = {"wxbs"};
     EXPECT_EQ(4, evaluate(options));
-    EXPECT_TRUE(findPairs(options.roots).empty());  // which others ask for
+    EXPECT_TRUE(findPairs(options.roots).empty());  // other experiments ask for these pairs
 }
 
 TEST_F(EvaluationTest, images_of_different_sets_are_matched)
@@ -308,7 +308,7 @@ TEST_F(EvaluationTest, images_of_different_sets_are_matched)
         EXPECT_EQ(0, valueAfter(table, std::string(pair) + ",unrelated,,matchViews,")) << pair;
 }
 
-TEST_F(EvaluationTest, mistakes_are_told)
+TEST_F(EvaluationTest, invalid_options_are_refused)
 {
     options.experiments = {"unknown_points"};
     EXPECT_NE(std::string::npos, messageOf([&] { evaluate(options); }).find("unknown_points"));
@@ -330,7 +330,7 @@ TEST_F(EvaluationTest, mistakes_are_told)
             std::string::npos, testing::internal::GetCapturedStderr().find("1.png: not a readable image\n"));
 }
 
-// As createFor and createRecommended make them for users, with the ROS that the preset was learned for.
+// Presets are evaluated with the parameters of createFor and createRecommended, and the ROS that they were learned for.
 TEST(Detectors, presets_are_described_with_their_own_scale)
 {
     cv::Mat image(200, 260, CV_8U), expected;

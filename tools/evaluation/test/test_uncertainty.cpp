@@ -28,7 +28,7 @@ TEST(Uncertainty, scores_are_logarithms_of_a_density)
     EXPECT_NEAR(sum, 1, 2e-3);
 }
 
-//! As findRelativePose's documentation has b, t x b and the axis along which t is shortest.
+//! The vectors b and t x b of findRelativePose's documentation.
 TEST(Uncertainty, directions_err_along_documented_axes)
 {
     cv::RNG random(3);

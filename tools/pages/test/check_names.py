@@ -38,7 +38,7 @@ def wrong_links(text, page):
 
 @functools.lru_cache(None)
 def help_of(program):
-    """What a program or script says of itself; empty if it was not built."""
+    """The help of a program or script; empty if it was not built."""
     return subprocess.run([program, '--help'], capture_output=True, text=True).stdout if program.is_file() else ''
 
 

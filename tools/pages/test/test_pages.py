@@ -94,7 +94,7 @@ class Figures(unittest.TestCase):
         low, high = summaries.interval([[0], [1]] * 50)
         self.assertAlmostEqual(low, .5 - 1.96 * .05, delta=.015)
         self.assertAlmostEqual(high, .5 + 1.96 * .05, delta=.015)
-        one = summaries.interval([[0] * 50, [1] * 50])  # whole scenes are drawn: two say little
+        one = summaries.interval([[0] * 50, [1] * 50])  # whole scenes are resampled, and two say little
         self.assertEqual(one, [0, 1])
 
     def test_a_ratio_is_chosen_on_other_places(self):
@@ -104,14 +104,14 @@ class Figures(unittest.TestCase):
                  for (place, ratio), error in errors.items() for method in (controls.CHAIN, ('ORB', 'ORB'))]
         self.assertEqual(summarized([heads], controls.summarize), [])
         found = summaries.by(summarized([heads, *lines], controls.summarize), 'place', 'detector', ratio='best')
-        # without yard .9 is best, without room and without court .8
+        # the best ratio is .9 without yard, and .8 without room or court
         self.assertEqual({place: (row['pairs'], row['at_5'], row['less'], row['poses'], row['wrong']) for (place, name), row in found.items() if name == 'ORB' and place in (
             'yard', 'room', 'court', 'other light')},
             {'yard': ('1', '0', '1', '1', '0'), 'room': ('1', '0.5', '0.5', '1', '0'), 'court': ('1', '0', '1', '0', '0'), 'other light': ('2', '0.25', '0.75', '2', '0')})
 
     def test_bounds_of_rates(self):
         self.assertAlmostEqual(controls.upper_bound(0, 446), 1 - .05 ** (1 / 446), delta=1e-9)
-        self.assertAlmostEqual(controls.upper_bound(1, 10), .394, delta=.001)  # of Clopper and Pearson's tables
+        self.assertAlmostEqual(controls.upper_bound(1, 10), .394, delta=.001)  # from Clopper and Pearson's tables
 
     def test_gains_are_of_the_same_pairs(self):
         rows = [('tilde_webcam' if target else 'iib_demo', target, 'ORB', descriptor, 'light', correct, target)

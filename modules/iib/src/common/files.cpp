@@ -41,7 +41,7 @@ std::wstring systemName(const String& name)
 
 namespace {
 
-//! What a file's name leads to.
+//! The file of a name, if there is one. `file`: it is a regular file.
 struct Present
 {
     bool any, file;

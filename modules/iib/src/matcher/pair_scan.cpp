@@ -101,18 +101,18 @@ private:
 };
 
 //! Calls report(query, train, distance) for the pairs of a chunk that are below a threshold of HammingSink.
-template <class Found>
+template <class Report>
 void scanPruned(const SearchInput& input, PairChunks& chunk, const int* queryThresholds,
-        const int* trainThresholds, const Found& report)
+        const int* trainThresholds, const Report& report)
 {
     struct Sink CV_FINAL : public HammingSink
     {
-        Sink(const int* ofQueries, const int* ofTrains, const Found& report_)
+        Sink(const int* ofQueries, const int* ofTrains, const Report& report_)
             : HammingSink(ofQueries, ofTrains), report(report_)
         {
         }
         void found(int query, int train, int distance) CV_OVERRIDE { report(query, train, distance); }
-        const Found& report;
+        const Report& report;
     } sink(queryThresholds, trainThresholds, report);
     const std::vector<PruneStage>& stages = input.policy.stages;
     const CodeLayout& layout = input.trains.layout();

@@ -49,7 +49,7 @@ TEST(IIB_IO, file_holds_every_parameter)
         });
 }
 
-//! As format 1 was written first: later versions must read it.
+//! A file as the first version wrote format 1; later versions must read it.
 const char FORMAT_1[] =
         "%YAML:1.0\n---\nIIB:\n   format: 1\n   scaleFactor: 9.1428575515747070e+00\n   granularity: 5\n"
         "   channels: 35\n   mapping: 4\n   overlap: 1\n   useOrientation: 1\n   extraChannels: 3\n"

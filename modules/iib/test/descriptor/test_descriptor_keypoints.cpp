@@ -85,7 +85,7 @@ TEST(IIB_KeyPoints, nothing_to_describe_releases_the_output)
     EXPECT_TRUE(udescriptors.empty());
 }
 
-// As ORB takes them.
+// All kinds of arguments that ORB accepts.
 TEST(IIB_KeyPoints, lists_of_images_and_kinds_of_outputs)
 {
     const Ptr<IIB> iib = IIB::create();

@@ -21,7 +21,7 @@ Rect unionOf(const Regions& regions, const std::vector<int>& members)
     return all;
 }
 
-//! Of all regions.
+//! Batches of all regions.
 std::vector<std::vector<int>> cutBatches(const Regions& regions, int workers)
 {
     std::vector<int> all(regions.size());
@@ -157,7 +157,7 @@ Regions staircase(int n, Size image)
 
 Regions cluster(int n, Size image) { return randomRegions(n, Size(image.width / 4, image.height / 4), 9, n); }
 
-// Each round looks at each keypoint once. Recursion without a limit took 10.4 s and 2 GB for 202,626 keypoints.
+// Each round visits each keypoint once. Recursion without a limit took 10.4 s and 2 GB for 202,626 keypoints.
 TEST(IIB_KeyPointBatches, rounds_and_pixels_are_bounded_for_every_layout)
 {
     for (const auto layout : {grid, staircase, cluster})

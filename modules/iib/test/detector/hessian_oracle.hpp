@@ -9,8 +9,8 @@
 
 namespace oracle {
 
-//! The bits of HessianDetector, a whole image a scale and pixel by pixel with its integers, of CV_8U or CV_16U. What a
-//! keypoint is says blobsByDefinition.
+//! The bits of HessianDetector for CV_8U or CV_16U: a whole image per scale, pixel by pixel, with its integers. For the
+//! definition of a keypoint see blobsByDefinition.
 std::vector<cv::KeyPoint> findBlobs(const cv::Mat& grey, const cv::iib::HessianDetector& parameters);
 
 /* The definition in the header of HessianDetector, with OpenCV's Gaussians and floating point, at the image's resolution:

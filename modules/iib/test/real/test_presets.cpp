@@ -13,7 +13,7 @@ struct PresetCase
     int preset;
     const char* name;
     int bytes;
-    double map, mar;  // on changed light, see meanScores
+    double map, mar;  // under changed illumination, see meanScores
 };
 
 std::ostream& operator<<(std::ostream& out, const PresetCase& c) { return out << c.name; }

@@ -26,7 +26,7 @@ template <typename Call> void expectError(int code, const String& culprit, const
     }
 }
 
-//! A text with another piece in place of one that it has.
+//! A text with one piece replaced by another.
 inline String replaced(String text, const String& from, const String& to)
 {
     const size_t at = text.find(from);

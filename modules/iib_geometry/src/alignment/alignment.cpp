@@ -161,7 +161,7 @@ private:
         searchViews(reference_, second, onlySimilar ? 1 : MOST_TILT,
                 [&](const ViewCandidate& candidate, int tried) {
                     const Matx33d map = onlySimilar ? similarityOf(candidate.map) : candidate.map;
-                    if (areAlike(map, Matx33d::eye()))
+                    if (haveSimilarViews(map, Matx33d::eye()))
                         return false;  // it was tried
                     attempt([&](int size) { return WorkingPair(reference_, second, size, map); }, second,
                             tried, best);
@@ -178,7 +178,7 @@ private:
         for (int round = 0; round < MOST_IMPROVED; round++)
         {
             const Matx33d next = affineAt(best.transform.inv(), Point2d(reference_.size()) / 2);
-            if (areAlike(next, map))
+            if (haveSimilarViews(next, map))
                 return;
             map = next;
             const Answer answer =

@@ -16,7 +16,7 @@ const double WIDER = 4;  // variance of the error that all matches share, over t
 //! Errors that matches share.
 struct Correlation
 {
-    //! Of the matches in one part of the image, beyond that of neighbours; at least the standard deviation of this estimate.
+    //! Correlation of the matches in one part of the image, beyond that of neighbours; at least its own standard deviation.
     double inParts = 0;
     double common2 = 0;  //!< variance of the error that all matches may share, pixels^2
 };
@@ -76,7 +76,7 @@ Mat cornerErrors(const FittedTransform& fitted, const AlignedPoints& points,
     const Correlation correlation = correlationOf(fitted, parts);
     const Square<PlanarProblem::Step> covariance =
             covarianceOf(fitted.problem, fitted.fit, parts, ANY, correlation.inParts);
-    // An error that all matches share does not show in their residuals; the parts' errors tell how large it may be.
+    // An error that all matches share does not show in their residuals; the parts' errors show how large it may be.
     const double common =
             2 * correlation.common2 + 2 * square(RESAMPLED * pixel) * resampledShare(fitted, points, pixel);
     Mat errors(4, 1, CV_64F);

@@ -10,7 +10,7 @@ namespace {
 
 const double LEAST_SCALE = .25;  // of the inliers' noise, working pixels
 /* Log likelihood that refutes a simpler model, per additional parameter and per inlier. True models gain up to 3.9 per parameter or .23 per inlier
-by noise and lens distortion; untrue ones with underestimated errors gain 5.3 and .29 (103 pairs under other light, each model). */
+by noise and lens distortion; untrue ones with underestimated errors gain 5.3 and .29 (103 pairs under changed illumination, each model). */
 const double LEAST_GAIN = 4.5, LEAST_GAIN_OF_MATCH = .24;
 // A transform of another part loses log likelihood on inliers of the simple one, and most of them. A true one keeps nine of ten.
 const double LEAST_LOSS = .1, MOST_SHARED = .8;

@@ -138,19 +138,18 @@ Judgement judge(
     if (!judgement.against.empty())
         return judgement;
     if (!fitted.isSignificant(evidence))
-        return refusedByFew(evidence.pair, format("the transform that agrees best has %d of %d matches, no "
-                                                  "more than chance may give: the "
-                                                  "images may not show the same",
-                                                   fitted.count(), fitted.problem.size()));
+        return refusedByFew(
+                evidence.pair, format("the best transform agrees with %d of %d matches, which could "
+                                      "be random: the images may not show the same scene",
+                                       fitted.count(), fitted.problem.size()));
     const FittedTransform& richest =
             all.back().exists() && !isOfAnotherPart(all.back(), fitted) ? all.back() : fitted;
     judgeMotion(richest, evidence, judgement);
     if (!judgement.against.empty())
         return judgement;
     if (areOfTheSensor(fitted, evidence))
-        return refused(
-                "the matches are single pixels that stay where they are, while larger points moved: hot "
-                "pixels or dust of the camera; mask or correct them");
+        return refused("the matches are single pixels that do not move, while larger points moved: hot "
+                       "pixels or dust of the camera; mask or correct them");
     const Parts parts(fitted, evidence);
     if (isOverlay(parts.reference, parts.image))
         return refused(
@@ -161,13 +160,12 @@ Judgement judge(
                isUncertain = !(norm(errors, NORM_INF) < MOST_ERROR * evidence.pair.imageDiagonal());
     const double overlap = std::max(parts.reference.share, parts.image.share);
     if ((isSmall || isUncertain) && overlap < LEAST_OVERLAP)
-        return refused(
-                format("the images overlap by %.0f %% alone, and the %d matches there do not determine "
-                       "a transform: take images that share more",
-                        100 * overlap, fitted.count()));
+        return refused(format("the images overlap by only %.0f %%, and the %d matches there do not determine "
+                              "a transform: use images that overlap more",
+                100 * overlap, fitted.count()));
     if (isSmall)
-        return refused(format("the images agree in small parts alone, with %d matches over %.0f %% of what "
-                              "both could show: too little to tell a place from a logo or a caption",
+        return refused(format("the images agree only in small parts, with %d matches over %.0f %% of the "
+                              "overlap: too little to distinguish a place from a logo or a caption",
                 fitted.count(), 100 * std::min(spread.area, spread.whole)));
     if (isUncertain)
         return refused(
@@ -175,10 +173,9 @@ Judgement judge(
                        "its size",
                         fitted.count()));
     if (!spread.isEverywhere() && judgement.note.empty())
-        judgement.note =
-                format("the images agree in one part of %.0f %% of what both could show; elsewhere the "
-                       "transform is extrapolated",
-                        100 * std::min(spread.area, 1.));
+        judgement.note = format("the images agree in one part of %.0f %% of the overlap; elsewhere the "
+                                "transform is extrapolated",
+                100 * std::min(spread.area, 1.));
     return judgement;
 }
 

@@ -5,7 +5,7 @@
 
 namespace cv::iib {
 
-/** Whether the matches that agree are marks of the sensor, such as hot pixels: single pixels that stay where they are, while hardly any
+/** Whether the matches that agree are marks of the sensor, such as hot pixels: single pixels that do not move, while hardly any
 larger point does. */
 bool areOfTheSensor(const FittedTransform& fitted, const Evidence& evidence);
 

@@ -36,7 +36,7 @@ WorkingPair::WorkingPair(
     for (int i = 0; i < 2; i++)
     {
         views_.views[i] = View::reduced(1. / factors[i]);
-        seen_[i] = images_[i]->seen(views_.views[i]);
+        described_[i] = images_[i]->described(views_.views[i]);
     }
 }
 
@@ -45,19 +45,21 @@ WorkingPair::WorkingPair(
     : images_{&reference, &image}, views_(ViewPair::of(map).within(std::min(SMALL, workingSize), workingSize,
                                            reference.size(), image.size()))
 {
-    seen_[0] = reference.seen(views_.views[0], -1, cornersAround(image.size(), map.inv()));
-    seen_[1] = image.seen(views_.views[1], (float)views_.angle, cornersAround(reference.size(), map));
+    described_[0] = reference.described(views_.views[0], -1, cornersAround(image.size(), map.inv()));
+    described_[1] =
+            image.described(views_.views[1], (float)views_.angle, cornersAround(reference.size(), map));
 }
 
 AlignedPoints WorkingPair::match() const
 {
-    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {seen_[0]->keypoints, seen_[1]->keypoints}};
-    const std::vector<DMatch> matches = matchesOf(*seen_[0], *seen_[1]);
+    AlignedPoints result = {
+            Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {described_[0]->keypoints, described_[1]->keypoints}};
+    const std::vector<DMatch> matches = matchesOf(*described_[0], *described_[1]);
     if (matches.empty())
         return result;
     Mat points1, points2;
-    refineMatches(seen_[0]->prepared, result.keypoints[0], seen_[1]->prepared, result.keypoints[1], matches,
-            points1, points2);
+    refineMatches(described_[0]->prepared, result.keypoints[0], described_[1]->prepared, result.keypoints[1],
+            matches, points1, points2);
     points1.convertTo(result.reference, CV_64F);
     points2.convertTo(result.image, CV_64F);
     return result;
@@ -81,7 +83,7 @@ AlignedPoints WorkingPair::refined(
     for (int i = 0; i < 2; i++)
     {
         fromImage[i] = full.views[i].fromImage(images_[i]->size());
-        toWorking[i] = seen_[i]->fromImage * fromImage[i].inv();
+        toWorking[i] = described_[i]->fromImage * fromImage[i].inv();
         prepared[i] = images_[i]->prepared(full.views[i]);
     }
     const Matx33d between = fromImage[1] * toImage * fromImage[0].inv();
@@ -115,9 +117,9 @@ AlignedPoints WorkingPair::refined(
 SharedPart WorkingPair::sharedPart(int which, const AlignedPoints& points, const std::vector<bool>& agree,
         const Matx33d& transform) const
 {
-    const Matx33d toImage = seen_[which]->fromImage.inv(), toOther = seen_[!which]->fromImage.inv() *
-                                                                     (which ? transform : transform.inv()) *
-                                                                     toImage.inv();
+    const Matx33d toImage = described_[which]->fromImage.inv(),
+                  toOther = described_[!which]->fromImage.inv() * (which ? transform : transform.inv()) *
+                            toImage.inv();
     const auto both = [&](const Point2d& point) {
         return images_[which]->shows(point) && images_[!which]->shows(moved(toOther, point));
     };
@@ -158,19 +160,19 @@ std::vector<Point2d> WorkingPair::imageCorners() const
     const double right = size.width - 1, bottom = size.height - 1;
     std::vector<Point2d> corners;
     for (const Point2d& corner : {Point2d(), Point2d(right, 0), Point2d(right, bottom), Point2d(0, bottom)})
-        corners.push_back(moved(seen_[1]->fromImage, corner));
+        corners.push_back(moved(described_[1]->fromImage, corner));
     return corners;
 }
 
 Mat WorkingPair::sameView() const
 {
-    const bool same = norm(seen_[0]->fromImage, seen_[1]->fromImage, NORM_INF) == 0;
+    const bool same = norm(described_[0]->fromImage, described_[1]->fromImage, NORM_INF) == 0;
     return same ? views_.views[0].pixels(images_[0]->image()) : Mat();
 }
 
 Matx33d WorkingPair::inPixels(const Matx33d& transform) const
 {
-    const Matx33d pixels = seen_[0]->fromImage.inv() * transform * seen_[1]->fromImage;
+    const Matx33d pixels = described_[0]->fromImage.inv() * transform * described_[1]->fromImage;
     return pixels * (1 / pixels(2, 2));
 }
 
@@ -185,8 +187,8 @@ Mat WorkingPair::inPixels(const AlignedPoints& points, const std::vector<bool>& 
     Mat both[2], all, result(0, 4, CV_32F);
     if (points.reference.empty())
         return result;
-    perspectiveTransform(points.reference.reshape(2), both[0], seen_[0]->fromImage.inv());
-    perspectiveTransform(points.image.reshape(2), both[1], seen_[1]->fromImage.inv());
+    perspectiveTransform(points.reference.reshape(2), both[0], described_[0]->fromImage.inv());
+    perspectiveTransform(points.image.reshape(2), both[1], described_[1]->fromImage.inv());
     hconcat(both[0].reshape(1), both[1].reshape(1), all);
     all.convertTo(all, CV_32F);
     for (int i = 0; i < all.rows; i++)

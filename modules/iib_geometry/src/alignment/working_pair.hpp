@@ -64,7 +64,7 @@ public:
 private:
     const ImageViews* images_[2];
     ViewPair views_;
-    std::shared_ptr<const SeenView> seen_[2];
+    std::shared_ptr<const DescribedView> described_[2];
 };
 
 }  // namespace cv::iib

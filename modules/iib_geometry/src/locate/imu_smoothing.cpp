@@ -22,7 +22,7 @@ constexpr double CORRELATED = 5;         // factor of variances: errors of the m
 constexpr double MEDIAN_SQUARED = 2.37;  // of chi^2 with three degrees of freedom
 constexpr double SLOW_ERRORS = 2;        // variance of all errors over that of the scatter
 constexpr double LEAST_SCALE = .01;      // of standard deviations, even without any scatter
-// Of chi^2 with six degrees of freedom, one value in a hundred is larger; one in eight.
+// Of chi^2 with six degrees of freedom: one value in a hundred is larger than the first, one in eight than the second.
 constexpr double MAX_SQUARED = 16.8, USUAL_SQUARED = 10;
 // Limits of the cumulative sum: four outliers in a row end a run; at its end two of six images do, or three of more.
 constexpr double MOST_EXCESS = 27, EXCESS_AT_END = 2;

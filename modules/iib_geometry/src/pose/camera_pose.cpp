@@ -13,13 +13,14 @@ namespace cv::iib {
 namespace {
 
 constexpr int ROUNDS = 20;
-constexpr int CLUSTERS = 4;           // a side, of what the matches span in the image
-constexpr double LEAST_TOLD = 1e-12;  // of the least direction of a pose over the one that is told best
+constexpr int CLUSTERS = 4;  // across and down the area that the matches span in the image
+constexpr double LEAST_TOLD =
+        1e-12;  // smallest over largest eigenvalue of the curvature: below, the pose is not determined
 
 }  // namespace
 
-// A point X is seen where the lens has R (X - c). A turn w about the world's axes gives R (1 - [w]x), so that by the centre it
-// moves by -R dc, and by the turn by R [X - c]x dw.
+// The lens projects R (X - c). A rotation w about the world's axes changes R to R (1 - [w]x). So this vector changes by
+// -R dc with the centre, and by R [X - c]x dw with the rotation.
 std::vector<LinearMatch> linearize(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
 {
     const std::vector<Point3d> points = pointsOf(matches);
@@ -34,7 +35,7 @@ std::vector<LinearMatch> linearize(const std::vector<Match>& matches, const Lens
         const double weight = 1 / (matches[i].deviation * matches[i].deviation + error.dot(error));
         if (std::isnan(weight))
             continue;
-        // by the point in the world's axes
+        // derivatives by the point, in the world's axes
         const Matx23d byMoved = matches[i].errorProjection * byPoint[i] * rotation;
         const Matx23d byTurn = byMoved * crossProduct(Vec3d(points[i]) - centre);
         for (int row = 0; row < 2; row++)
@@ -214,7 +215,7 @@ bool clusteredCovariance(
     for (const Match& m : matches)
         pixels.push_back(m.pixel);
     const Rect2d span = boundingRect(pixels);
-    std::map<std::pair<int, int>, Vec6d> gradients;  // of the clusters
+    std::map<std::pair<int, int>, Vec6d> gradients;  // by cluster
     std::vector<double> errors;
     Matx66d curvature = Matx66d::zeros(), ofGradient = Matx66d::zeros();
     for (size_t i = 0; i < near.size(); i++)

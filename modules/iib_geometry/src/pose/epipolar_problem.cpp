@@ -12,10 +12,10 @@
 namespace cv::iib {
 namespace {
 
-const int STRIDE = 32;          // matches between two looks at the limit
-const double MOST_SCALE = .01;  // of what the points span: wider, few wrong poses can be told from right ones
-const double NOWHERE = 1e-300;  // keeps an error of 0 / 0, at the epipoles, finite
-const int STEPS = 6;            // of a pose: five, and one more for an even number
+const int STRIDE = 32;          // matches between two checks of the limit
+const double MOST_SCALE = .01;  // of the points' span: at wider scales, wrong poses fit as well as right ones
+const double NOWHERE = 1e-300;  // avoids 0 / 0 at the epipoles
+const int STEPS = 6;            // five parameters, padded to an even number for vectorization
 
 std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
 {
@@ -28,7 +28,7 @@ std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
     return rays;
 }
 
-//! The rotation from some directions to others, of matches with weights (Kabsch 1976).
+//! The rotation that best turns the first directions to the second ones, weighted (Kabsch 1976).
 template <class WeightOf>
 Matx33d rotationBetween(const Point2d* first, const Point2d* second, int count, const WeightOf& weightOf)
 {
@@ -41,7 +41,7 @@ Matx33d rotationBetween(const Point2d* first, const Point2d* second, int count, 
     return U * Matx33d::diag(Vec3d(1, 1, determinant(U * Vt))) * Vt;
 }
 
-//! Inline and of copies, so that compilers make vectors of loops over matches.
+//! Inline, and called with local copies, so that compilers vectorize loops over matches.
 inline double squaredErrorOf(const Matx33d& E, const Vec4d& weights, const Point2d& u, const Point2d& v)
 {
     const double line0 = E(0, 0) * u.x + E(0, 1) * u.y + E(0, 2),
@@ -84,8 +84,10 @@ EpipolarProblem EpipolarProblem::subset(const std::vector<bool>& marks) const
 
 std::vector<int> EpipolarProblem::alikeTheirNeighbours(const std::vector<int>& matches) const
 {
-    const double farthest = .1, nearest = .01;  // of the span: nearer, matches may be wrong together
-    const double unlike = .5;  // of the distance between two matches: how much their moves differ
+    const double farthest = .1,
+                 nearest = .01;  // of the span; matches that are nearer are often wrong together
+    const double unlike =
+            .5;  // of the distance between two matches: largest difference of their displacements
     const int enough = 2;
     std::vector<int> order = matches, counts(size());
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return first_[a].x < first_[b].x; });
@@ -128,7 +130,7 @@ void EpipolarProblem::propose(const std::vector<int>& sample, std::vector<Relati
     poses.clear();
     std::vector<Matx33d> essentials;
     fivePointEssentials(first, second, essentials);
-    if (essentials.empty())  // as where no point has parallax: any t will do
+    if (essentials.empty())  // for example without parallax: any t explains the sample
         poses.push_back({rotationBetween(first, second, 5, [](int) { return 1.; }), Vec3d(0, 0, 1)});
     for (const Matx33d& essential : essentials)
     {
@@ -208,11 +210,11 @@ std::vector<double> EpipolarProblem::leastParallaxes(
     return parallaxes;
 }
 
-//! A pose and its derivatives.
+//! The essential matrix of a pose and its derivatives.
 struct EpipolarProblem::Linear
 {
     Matx33d E;
-    double byStep[9][STEPS] = {};  //!< of E's entries: of [t]x [e]x R, and of [b]x R
+    double byStep[9][STEPS] = {};  //!< of E's entries: [t]x [e]x R for rotations, [b]x R for translations
 
     explicit Linear(const RelativePose& pose) : E(essentialOf(pose))
     {
@@ -247,7 +249,7 @@ Row<EpipolarProblem::Step> EpipolarProblem::row(
     const double length2 = weightedLine[0] * line[0] + weightedLine[1] * line[1] + weightedBack[0] * back[0] +
                            weightedBack[1] * back[1] + NOWHERE;
     const double inverse = 1 / std::sqrt(length2), r = (v[0] * line[0] + v[1] * line[1] + line[2]) * inverse;
-    // dr = (v' dE u) / length - r (line' W dE u + back' W dE' v) / length^2: both are sums over dE's entries
+    // dr = (v' dE u) / length - r (line' W dE u + back' W dE' v) / length^2; both terms are sums over dE's entries
     const double pull = r * inverse;
     double J[STEPS] = {};
     for (int a = 0; a < 3; a++)
@@ -255,7 +257,7 @@ Row<EpipolarProblem::Step> EpipolarProblem::row(
         {
             const double byE =
                     (v[a] * u[b] - pull * (weightedLine[a] * u[b] + weightedBack[b] * v[a])) * inverse;
-            for (int k = 0; k < STEPS; k++)  // steps side by side, so that compilers make vectors of them
+            for (int k = 0; k < STEPS; k++)  // contiguous, so that compilers vectorize the loop
                 J[k] += byE * linear.byStep[3 * a + b][k];
         }
     Row<Step> row;
@@ -265,15 +267,15 @@ Row<EpipolarProblem::Step> EpipolarProblem::row(
     return row;
 }
 
-/** The plane that most matches lie on, if one is seen with the pose: a vector n that has the product 1 with its points, in
-lengths of t, so that R + t n' is its homography (Hartley and Zisserman 2004, section 13.1). Samples of three matches propose
-planes; a match is as far from one as its point on the plane is seen from it, pixels as Sampson's error has them. */
+/** The plane that most matches lie on under a pose: a vector n with n' X = 1 for its points X, in units of t. So R + t n' is its
+homography (Hartley and Zisserman 2004, section 13.1). Samples of three matches propose planes. The error of a match is the
+distance of its point from the plane, in pixels as in Sampson's error. */
 Vec3d EpipolarProblem::planeOf(const RelativePose& pose, double scale) const
 {
     struct Seen
     {
         Vec3d ray;
-        double nearness, pixels;  // one over the depth, and pixels that one of it moves the point by
+        double nearness, pixels;  // 1 / depth, and the point's motion in pixels for a change of 1 in it
     };
     const int trials = 50;
     const double farthest2 = FARTHEST * square(scale);
@@ -334,7 +336,8 @@ Vec3d EpipolarProblem::planeOf(const RelativePose& pose, double scale) const
 std::vector<RelativePose> EpipolarProblem::rivals(const RelativePose& pose, double scale) const
 {
     const Matx33d homography = pose.R + pose.t * planeOf(pose, scale).t();
-    const double mostOff = .1;  // of a rotation's numbers: of an odd camera the decomposition gives others
+    const double mostOff =
+            .1;  // of R R' from 1: the decomposition of a degenerate homography gives no rotations
     std::vector<Mat> rotations, translations, normals;
     std::vector<RelativePose> poses;
     if (!checkRange(homography))
@@ -346,7 +349,7 @@ std::vector<RelativePose> EpipolarProblem::rivals(const RelativePose& pose, doub
         const Matx33d R(rotations[k]);
         if (!(norm(R * R.t() - Matx33d::eye()) < mostOff && norm(t) > NOWHERE))
             continue;
-        const RelativePose other = moved({R, t * (1 / norm(t))}, Step());  // exactly one
+        const RelativePose other = moved({R, t * (1 / norm(t))}, Step());  // makes R orthonormal
         if (areApart(pose, other) && areApart(pose, {other.R, -other.t}))
             poses.push_back(other);
     }
@@ -385,8 +388,8 @@ void EpipolarProblem::linearize(const RelativePose& pose, double limit, std::vec
 std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
         const RelativePose& pose, const std::vector<Row<Step>>& rows, double noise2) const
 {
-    const double little = .01;  // pixels, for differences
-    const double most = 2;      // times the mean of what noise makes, which few rows exceed by it alone
+    const double little = .01;  // pixels: step of the finite differences
+    const double most = 2;      // times the mean square of the noise; noise alone seldom exceeds it
     const double more = 1 + 2 * std::sqrt(2. / std::max<double>((double)rows.size(), 1));
     const Linear linear(pose);
     std::vector<Square<Step>> all;
@@ -402,7 +405,8 @@ std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
         }
         const double left =
                 1 - most * (noise(3, 3) + noise(4, 4)) / (square(r.J[3]) + square(r.J[4]) + NOWHERE);
-        // By how many of two steps are directions: what is left of the row, and of its noise, half of which the share takes out.
+        // Indexed by how many of the two parameters belong to the direction: the share of the row that stays, and the share of its
+        // noise.
         const double shares[] = {1, std::sqrt(std::max(left, 0.)), std::max(left, 0.)}, kept[] = {1, .5, .25};
         for (int a = 0; a < Step::channels; a++)
             for (int b = 0; b <= a; b++)

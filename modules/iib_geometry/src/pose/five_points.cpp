@@ -9,7 +9,7 @@
 namespace cv::iib {
 namespace {
 
-const double SINGULAR = 1e-12;  // pivots below are 0; all entries are of the order of 1
+const double SINGULAR = 1e-12;  // smaller pivots count as 0; all entries are of the order of 1
 
 // Polynomials in x, y, z: Linear x y z 1; Quadratic xx xy xz x yy yz y zz z 1; Cubic in the order of Nister's
 // section 3.2: xxx yyy xxy xyy xxz xx yyz yy xyz xy xzz xz x yzz yz y zzz zz z 1.
@@ -35,9 +35,10 @@ void addProduct(const Quadratic& a, const Linear& b, double* sum)
             sum[CUBIC[i][j]] += a[i] * b[j];
 }
 
-/** Brings the first ROWS columns, in an order that `column` receives, to the identity. False: singular.
-@param candidates columns among which pivots are looked for, all; 0: columns keep their order, and are left as they are once they
-    count no more, as are the rows before `needed`. */
+/** Gauss-Jordan elimination of the first ROWS columns to the identity. False if the matrix is singular.
+@param candidates number of columns to search for pivots. 0: columns keep their order, and their used entries are not cleared.
+@param needed with 0 candidates: rows before this one are not eliminated completely.
+@param column receives the order of the columns. */
 template <int ROWS, int COLUMNS>
 bool eliminate(Matx<double, ROWS, COLUMNS>& m, int candidates, int needed, int (&column)[COLUMNS])
 {
@@ -72,7 +73,7 @@ bool eliminate(Matx<double, ROWS, COLUMNS>& m, int candidates, int needed, int (
     return true;
 }
 
-//! Entries of E as polynomials, E = xX + yY + zZ + W in the null space of the five epipolar constraints.
+//! The entries of E as polynomials: E = xX + yY + zZ + W is in the null space of the five epipolar constraints.
 bool nullSpace(const Point2d first[5], const Point2d second[5], Linear (&E)[9])
 {
     Matx<double, 5, 9> m;
@@ -144,8 +145,8 @@ void fivePointEssentials(const Point2d first[5], const Point2d second[5], std::v
     if (!eliminate(m, 0, FIRST_NEEDED, column))
         return;
 
-    // Rows 4 to 9 begin with xxz, xx, yyz, yy, xyz, xy: three pairs whose difference has x and y to the first power
-    // alone. B (x, y, 1)' = 0, with polynomials in z as entries (section 3.2.1).
+    // Rows 4 to 9 begin with xxz, xx, yyz, yy, xyz, xy. The differences of these three pairs are linear in x and y:
+    // B (x, y, 1)' = 0, where B has polynomials in z (section 3.2.1).
     Vec<double, 11> B[3][3], determinant = Vec<double, 11>::all(0);
     const int from[] = {10, 13, 16}, terms[] = {3, 3, 4};
     for (int r = 0; r < 3; r++)
@@ -176,7 +177,7 @@ void fivePointEssentials(const Point2d first[5], const Point2d second[5], std::v
             for (int c = 0; c < 3; c++)
                 for (int k = 4; k >= 0; k--)
                     at(r, c) = at(r, c) * z + B[r][c][k];
-        // (x, y, 1) is orthogonal to all rows: of the three products of two, the longest is the most accurate
+        // (x, y, 1) is orthogonal to all rows; the longest cross product of two rows is the most accurate
         Vec3d solution;
         for (int r = 0; r < 3; r++)
         {

@@ -26,11 +26,11 @@ enum Kind
 struct Model
 {
     const char* name;
-    size_t focals, others;  // focal lengths, and what follows the centre
+    size_t focals, others;  // numbers of focal lengths, and of parameters after the centre
     Kind kind;
 };
 
-//! By COLMAP's numbers.
+//! In the order of COLMAP's numbers.
 const Model MODELS[] = {{"SIMPLE_PINHOLE", 1, 0, STRAIGHT}, {"PINHOLE", 2, 0, STRAIGHT},
         {"SIMPLE_RADIAL", 1, 1, POLYNOMIAL}, {"RADIAL", 1, 2, POLYNOMIAL}, {"OPENCV", 2, 4, POLYNOMIAL},
         {"OPENCV_FISHEYE", 2, 4, FISHEYE}, {"FULL_OPENCV", 2, 8, POLYNOMIAL}, {"FOV", 2, 1, FIELD_OF_VIEW},
@@ -40,9 +40,9 @@ const Model MODELS[] = {{"SIMPLE_PINHOLE", 1, 0, STRAIGHT}, {"PINHOLE", 2, 0, ST
         {"FISHEYE", 2, 0, FISHEYE}, {"EUCM", 2, 2, UNIFIED}};
 constexpr double MAX_RATIO = 1000;  // of a focal length and the longer side
 constexpr int ROUNDS = 100;
-constexpr int DIRECTIONS = 8, ANGLES = 64;  // of rays, by which a lens's range is found
+constexpr int DIRECTIONS = 8, ANGLES = 64;  // of rays that sample a lens's range
 
-//! The finite numbers that a text holds, separated by commas; none if it holds anything else.
+//! Parses finite numbers separated by commas; empty if the text holds anything else.
 std::vector<double> numbersOf(const std::string& text)
 {
     std::istringstream stream(text);  // no std::from_chars: before macOS 26 it reads no numbers with a point
@@ -175,8 +175,8 @@ Matx22d Lens::slope(const Vec2d& ray) const
     return {byX[0], byY[0], byX[1], byY[1]};
 }
 
-/** Beyond the angle at which a polynomial is largest it would have points back in the image, which no lens does. Where distortion
-is not symmetric, the least of several directions. */
+/** The range ends where the distortion polynomial is largest. Beyond that angle, it would project points back into the image, which
+no lens does. Distortion may be asymmetric, so the smallest range of several directions counts. */
 double Lens::findRange() const
 {
     double range = std::numeric_limits<double>::infinity();
@@ -219,8 +219,9 @@ std::vector<Point2d> Lens::undistorted(const std::vector<Point2d>& pixels) const
         double error = norm(distorted(ray) - seen);
         for (int round = 0; round < ROUNDS && norm(step) > 1e-12 * (1 + norm(ray)); round++)
         {
-            step = slope(ray).inv() * (seen - distorted(ray));  // Newton's, shortened until it leads nearer
-            if (!std::isfinite(norm(step)))  // of a pixel beyond the lens, which no ray reaches
+            step = slope(ray).inv() *
+                   (seen - distorted(ray));  // Newton's step, shortened until the error falls
+            if (!std::isfinite(norm(step)))  // no ray reaches this pixel
                 break;
             double next = norm(distorted(ray + step) - seen);
             for (; !(next < error && norm(ray + step) <= range_) && norm(step) > 1e-12 * (1 + norm(ray));

@@ -6,10 +6,10 @@
 namespace cv::iib {
 namespace {
 
-//! Matches between two looks at the limit; the product of what they lose is no larger than 1e16.
+//! Matches between two checks of the limit; the product of their 1 + r^2 / scale^2 is at most 1e16.
 const int STRIDE = 16;
 
-//! The sign of the determinant of the derivatives by a point before the horizon is that of det T.
+//! Before the horizon, the determinant of the derivatives by a point has the sign of det T.
 bool mirrors(const Matx33d& T) { return !(determinant(T) > 0); }
 
 Matx33d entry(int row, int column, double value = 1)
@@ -56,7 +56,7 @@ PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind) :
                     entries_.push_back({k, row, column, basis_[k](row, column)});
     if (image.empty())
         return;
-    // one unit for both, so that a translation stays one
+    // one unit for both images, so that a translation stays a translation
     const Vec2d from = meanOf(reference), to = meanOf(image);
     double spread = 1;
     for (int i = 0; i < image.rows; i++)
@@ -68,8 +68,8 @@ PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind) :
     unit_ = spread;
 }
 
-// Of T p = w r, with T = 1 + sum of s_k G_k, two equations a match are linear in s, and w drops out (Hartley and Zisserman 2004,
-// section 4.1).
+// T p = w r with T = 1 + sum of s_k G_k. Without w, each match gives two equations that are linear in s (Hartley and Zisserman
+// 2004, section 4.1).
 void PlanarProblem::propose(const std::vector<int>& sample, std::vector<Matx33d>& transforms) const
 {
     transforms.clear();

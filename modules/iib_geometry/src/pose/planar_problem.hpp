@@ -5,8 +5,8 @@
 
 namespace cv::iib {
 
-/** Matches of two images between which a transform of the plane is sought (robust_fit.hpp): 3 x 3, last entry 1, mirroring
-nothing. The error of a match is the distance in the first image, pixels. */
+/** A Problem of robust_fit.hpp: a transform of the plane between two images, 3 x 3, last entry 1, without mirroring. The error of
+a match is the distance in the first image, pixels. */
 class PlanarProblem
 {
 public:
@@ -22,23 +22,23 @@ public:
 
     void propose(const std::vector<int>& sample, std::vector<Matx33d>& transforms) const;
     double loss(const Matx33d& transform, const Loss& by, double limit) const;
-    //! Of a point of the reference and one of the image, if the transform mirrors nothing; infinite beyond the horizon.
+    //! Assumes a transform that does not mirror; infinite beyond the horizon.
     double squaredError(const Matx33d& transform, int reference, int image) const;
     void squaredErrors(const Matx33d& transform, std::vector<double>& errors) const;
     void linearize(const Matx33d& transform, double limit, std::vector<Row<Step>>& rows) const;
     Matx33d moved(const Matx33d& transform, const Step& step) const;
 
-    //! Next to none.
+    //! Zero: derivatives hardly depend on the points' noise.
     std::vector<Square<Step>> noiseInDerivatives(
             const Matx33d&, const std::vector<Row<Step>>& rows, double) const
     {
         return std::vector<Square<Step>>(rows.size());
     }
 
-    //! The same transform between pixels, and that of a model between pixels.
+    //! Converts a Model, which transforms normalized coordinates, to pixels.
     Matx33d inPixels(const Matx33d& transform) const;
 
-    //! Standard deviation in pixels of the place that a pixel of the image has in the reference.
+    //! Standard deviation, in pixels of the reference, of a transformed pixel of the image.
     double deviation(const Matx33d& transform, const Square<Step>& covariance, const Point2d& pixel) const;
 
 private:
@@ -47,18 +47,18 @@ private:
         Vec2d at;
         Matx<double, 2, 8> byStep;
     };
-    struct Entry  // of a matrix of the basis, not 0
+    struct Entry  // a nonzero entry of a basis matrix
     {
         int step, row, column;
         double value;
     };
     Place placeOf(const Matx33d& transform, const Vec3d& point) const;
 
-    std::vector<Matx33d> basis_;            // a step adds multiples of them
-    std::vector<Entry> entries_;            // of all of them
-    std::vector<Vec3d> reference_, image_;  // centred, of the order of one, third coordinate 1
-    Matx33d fromReference_, fromImage_;     // pixels to these
-    double unit_;                           // one of them in pixels
+    std::vector<Matx33d> basis_;            // a step adds multiples of these matrices
+    std::vector<Entry> entries_;            // of all basis matrices
+    std::vector<Vec3d> reference_, image_;  // normalized: centred, of the order of one, third coordinate 1
+    Matx33d fromReference_, fromImage_;     // pixels to normalized coordinates
+    double unit_;                           // pixels per normalized unit
 };
 
 }  // namespace cv::iib

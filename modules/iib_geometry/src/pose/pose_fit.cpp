@@ -9,27 +9,28 @@ namespace {
 typedef std::vector<double> Errors;
 
 const int THRESHOLDS = 7;
-const double FIRST_THRESHOLD = 1.4, LAST_THRESHOLD = 12;  // scales; misfit() ends at 12 times its first
-const double UNSURE = 4;  // times smaller or larger than a scale that errors show, the right one may be
-const double FINELY = 1e-9, ROUGHLY = 1e-3;  // by how much less of its loss a pose is polished
+const double FIRST_THRESHOLD = 1.4,
+             LAST_THRESHOLD = 12;            // scales; in misfit(), LAST_THRESHOLD is a factor of the first
+const double UNSURE = 4;                     // factor by which an estimated scale may be wrong
+const double FINELY = 1e-9, ROUGHLY = 1e-3;  // polish's `enough`
 const int FEWEST = 100, FEW_TRIALS = 1000, MANY_TRIALS = 500, MOST_TRIALS = 12000;
-const double MISSED = 1e-4;         // probability that no sample was of right matches alone
-const int ROUNDS = 3;               // of samples from what agrees with the best pose,
-const double BETTER = .99;          // while its sum falls to less than this of it
-const double MOST_OF_REFINED = .6;  // pixels: matches that are not refined have more
-const double WIDER = 4;             // one scale that is tried over the one before
-const int FEW = 30;                 // matches: all of them count
+const double MISSED = 1e-4;         // accepted probability that every sample has a wrong match
+const int ROUNDS = 3;               // of sampling from the best pose's inliers, at most
+const double BETTER = .99;          // another round follows if the best sum falls below this share of it
+const double MOST_OF_REFINED = .6;  // pixels: largest scale of refined matches
+const double WIDER = 4;             // factor from one scale to the next
+const int FEW = 30;                 // matches: the final fit uses all if fewer agree
 
-/** The first of the thresholds by which poses are compared.
-@param scale given by the caller, or else shown by the errors of a pose that may be wrong. */
+/** The first threshold for comparing poses.
+@param given whether the scale comes from the caller; else it was estimated from a pose that may be wrong. */
 double firstThreshold(const EpipolarProblem& problem, bool given, double scale)
 {
     const bool isSure =
-            given || problem.size() < 2 * FEW;  // a pose can be fitted to few matches as closely as one likes
+            given || problem.size() < 2 * FEW;  // a small threshold is useless: poses fit few matches closely
     return isSure ? FIRST_THRESHOLD * scale : std::max(REFINED, scale / UNSURE);
 }
 
-//! The sum of the squared errors, cut off at thresholds from the first one to one that is LAST_THRESHOLD times as far.
+//! The sum of the squared errors, cut off at thresholds from `first` to LAST_THRESHOLD times `first`.
 double misfit(const Errors& squared, double first, const Errors& weights)
 {
     double perThreshold2[THRESHOLDS], sum = 0;
@@ -64,10 +65,10 @@ Candidate candidateOf(
     return candidate;
 }
 
-/** The best of the poses that a search leads to, and the other candidates.
+/** The best pose of a search, and the other candidates.
 @param unit scale of the search, pixels.
-@param first threshold by which poses are compared.
-@param farthest of a match that agrees, pixels: in a wider band matches of nearby points agree, whatever they are. */
+@param first threshold for comparing poses.
+@param farthest largest error of an inlier, pixels: in a wider band, any match of nearby points agrees. */
 PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double unit, double first,
         double farthest, Search<EpipolarProblem>& search, int trials, const Errors& weights)
 {
@@ -85,7 +86,7 @@ PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double uni
         return fit;
     for (int round = 0; round < ROUNDS && search.samples() >= MANY_TRIALS; round++)
     {
-        // Few of the samples were right. Of what agrees with the best pose so far, many are.
+        // Few samples from all matches are free of wrong ones. Many are, if taken from the best pose's inliers.
         std::vector<int> agree;
         for (int i = 0; i < problem.size(); i++)
             if (candidates[0].squared[i] < square(LAST_THRESHOLD * unit))
@@ -117,7 +118,7 @@ PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double uni
     return fit;
 }
 
-//! The best pose by a search under that scale, or under wider ones until matches agree by more than chance.
+//! The best pose of a search at the given scale. Without one, scales get wider until the inliers are significant.
 PoseFit searchPose(
         const EpipolarProblem& problem, const Verdict& verdict, double scale, const Errors& weights)
 {
@@ -141,7 +142,7 @@ PoseFit searchPose(
             fit.scale = scale > 0 ? scale : scaleWithin(fit.squared, fit.limit, problem.parameters());
             if (isBetter(fit))
                 best = fit;
-            // Where they err by more than refined ones, a wider scale finds more of them in less time.
+            // Matches that were not refined are found faster at a wider scale.
             if (!search.wantsMore() || trials == mostTrials || (isCertain() && fit.scale > MOST_OF_REFINED))
                 break;
         }
@@ -166,7 +167,7 @@ PoseFit searchPose(
     };
     if (scale == 0 && problem.size() < FEW)
     {
-        // A pose may be fitted to some of few matches so well that the others seem wrong.
+        // With few matches, a pose may fit some so closely that the others seem wrong. A wider scale avoids this.
         const PoseFit narrow = best;
         best = PoseFit();
         tryBy(WIDER * REFINED, FEW_TRIALS, FEW_TRIALS);
@@ -177,8 +178,8 @@ PoseFit searchPose(
     return best;
 }
 
-/** Polishes what may explain the matches as well: the other poses of a plane, t the other way, and the candidates that are apart from
-the pose and from each other. */
+/** Polishes the other poses that may explain the matches: the other poses of a plane, the pose with -t, and candidates that differ
+from the pose and from each other. */
 void addOthers(const EpipolarProblem& problem, PoseFit& fit)
 {
     const size_t most = 6;
@@ -200,7 +201,7 @@ void addOthers(const EpipolarProblem& problem, PoseFit& fit)
             fit.others.size(), [&](size_t i) { polish(problem, Loss{fit.scale}, ROUGHLY, fit.others[i]); });
 }
 
-//! The scale that the errors show, if it is wider than that one.
+//! The scale estimated from the errors, if it is wider than `scale`.
 double widerScale(const EpipolarProblem& problem, const Errors& squared, double scale)
 {
     for (double wider = scale, shown; wider <= problem.mostScale(); wider *= 2)
@@ -209,7 +210,7 @@ double widerScale(const EpipolarProblem& problem, const Errors& squared, double 
     return scale;
 }
 
-//! Polishes the pose by the matches that agree with it for another reason than chance; by all, where few do.
+//! Polishes the pose by its inliers without those that are probably wrong; by all matches if that leaves few.
 void polishByAgreeing(const EpipolarProblem& problem, double scale, PoseFit& fit)
 {
     fit.errorScale = fit.limit < 6 * fit.scale ? fit.scale : fit.limit / 3;
@@ -222,7 +223,7 @@ void polishByAgreeing(const EpipolarProblem& problem, double scale, PoseFit& fit
     if (std::count(fit.used.begin(), fit.used.end(), true) < FEW)
     {
         fit.used.assign(problem.size(), true);
-        if (scale == 0)  // few matches show too narrow a scale
+        if (scale == 0)  // the scale estimated from few matches is too narrow
             fit.scale = fit.errorScale = std::max(fit.errorScale, fit.limit / 3);
     }
     polish(problem.subset(fit.used), Loss{fit.scale}, FINELY, fit.model);
@@ -243,7 +244,7 @@ PoseFit fitPose(const EpipolarProblem& problem, const Verdict& verdict, double s
     addOthers(problem, best);
     const double first = firstThreshold(problem, scale > 0, best.scale);
     double least = misfit(best.squared, first, weights);
-    for (RelativePose& other : best.others)  // next to a pose that was polished may be a better one
+    for (RelativePose& other : best.others)  // near a polished pose there may be a better one
     {
         const Candidate candidate = candidateOf(problem, other, first, weights);
         if (candidate.sum >= least)

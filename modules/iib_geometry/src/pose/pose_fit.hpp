@@ -6,27 +6,29 @@
 
 namespace cv::iib {
 
-const double REFINED = .25;  // least scale by which matches count as agreeing, pixels
+const double REFINED = .25;  // pixels: least scale of the inlier threshold
 
 //! A pose that matches agree with.
 struct PoseFit : Fit<EpipolarProblem>
 {
-    std::vector<RelativePose> others;  //!< that may explain the same matches, polished
-    size_t planar = 0;                 //!< so many of them, the first ones, are the same plane seen otherwise
+    std::vector<RelativePose> others;  //!< other poses that may explain the same matches, polished
+    size_t planar = 0;  //!< the first so many of `others` come from the plane's second solution
     double logFalseAlarms = std::numeric_limits<double>::infinity();
-    double limit = 0;       //!< the distance, pixels, within which the matches agree by the least chance
-    double chance = 1;      //!< that a wrong match is so near
-    double errorScale = 0;  //!< pixels: the scale, or a wider one where the errors have long tails
-    Verdict::Marks used;    //!< matches that the pose was fitted to in the end, and that its errors come from
+    double limit = 0;       //!< pixels: the inlier threshold with the fewest expected false alarms
+    double chance = 1;      //!< probability that a wrong match is within the limit
+    double errorScale = 0;  //!< pixels: the scale, or a wider one if the errors have long tails
+    Verdict::Marks used;    //!< matches of the final fit; its uncertainty is estimated from them
 };
 
-/** The pose that explains the matches best. The same in every run.
+/** The pose that explains the matches best. Deterministic.
 
-No single threshold shows which of the candidates that is: each has the sum of its squared errors, cut off at seven thresholds, the last
-one twelve times the first. A match behind a camera counts as a point at infinity. Half of the samples are of matches that move like their
-neighbours. Without a scale, that of refined matches is tried, and wider ones until matches agree by more than chance.
+- Candidates are compared at seven thresholds at once, the last one twelve times the first. No single threshold finds the best one.
+  A candidate's sum has the squared errors cut off at each threshold.
+- A match behind a camera counts as a point at infinity.
+- Half of the samples are from matches that move like their neighbours.
+- Without a scale, the scale of refined matches is tried first, then wider ones, until the matches that agree are significant.
 @param scale of Cauchy's loss, pixels; 0: estimated from the errors.
-@param weights of the matches in the choice among candidates, or none. */
+@param weights of the matches in the choice among candidates; may be empty. */
 PoseFit fitPose(const EpipolarProblem& problem, const Verdict& verdict, double scale,
         const std::vector<double>& weights);
 

@@ -11,7 +11,7 @@ namespace {
 
 const int HIGHEST = 10;
 
-//! Inline, and of a degree that the compiler knows: most of the search for roots is spent here.
+//! Inline, with the degree known to the compiler: most of the time is spent here.
 inline double valueAt(const double* p, int degree, double x, double& slope)
 {
     double value = p[degree];
@@ -24,7 +24,7 @@ inline double valueAt(const double* p, int degree, double x, double& slope)
     return value;
 }
 
-//! The root between `low` and `high`, where the signs differ: Newton's steps, halving where they would leave.
+//! The root between `low` and `high`, where the signs differ. Newton's steps, or bisection where a step would leave the interval.
 template <int degree>
 double rootBetween(const double* p, double low, double high, bool rising, double precision)
 {
@@ -47,7 +47,7 @@ double (*const ROOT_BETWEEN[])(const double*, double, double, bool, double) = {n
         rootBetween<2>, rootBetween<3>, rootBetween<4>, rootBetween<5>, rootBetween<6>, rootBetween<7>,
         rootBetween<8>, rootBetween<9>, rootBetween<HIGHEST>};
 
-//! Roots in [-1, 1], ascending: between two extremes, which are the roots of the derivative, there is one at most.
+//! Roots in [-1, 1], ascending. Between two roots of the derivative there is at most one.
 int rootsInUnit(const double* p, int degree, double* roots)
 {
     double derivatives[HIGHEST][HIGHEST + 1], ends[HIGHEST + 1], slope;
@@ -83,7 +83,7 @@ int realRoots(const double* coefficients, int degree, double* roots)
 {
     CV_DbgAssert(degree > 0 && degree <= HIGHEST);
     int count = rootsInUnit(coefficients, degree, roots);
-    // the others are inverses of the roots of the polynomial read backwards
+    // the roots outside [-1, 1] are inverses of the reversed polynomial's roots
     double reversed[HIGHEST + 1], inverses[HIGHEST];
     std::reverse_copy(coefficients, coefficients + degree + 1, reversed);
     const int large = rootsInUnit(reversed, degree, inverses);

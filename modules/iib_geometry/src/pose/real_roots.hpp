@@ -3,9 +3,9 @@
 
 namespace cv::iib {
 
-/** The real roots of a polynomial of degree 1 to 10, roots of even multiplicity apart.
+/** The real roots of a polynomial of degree 1 to 10, except those of even multiplicity.
 @param coefficients degree + 1 numbers, the constant first
-@param roots room for `degree` numbers
+@param roots receives up to `degree` numbers
 @returns the number of roots */
 int realRoots(const double* coefficients, int degree, double* roots);
 

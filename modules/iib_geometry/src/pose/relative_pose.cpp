@@ -10,8 +10,8 @@ namespace cv::iib {
 namespace {
 
 const double LEAST_SCALE = .1, MOST_SCALE = 1000;  // pixels
-const double RANK = 1e-13;                         // of covariances in double precision
-const double ONE_DIRECTION = 1;                    // radians: of poses more apart, t may have any
+const double RANK = 1e-13;                         // keeps covariances invertible in double precision
+const double ONE_DIRECTION = 1;                    // radians: if two possible t differ by more, t is unknown
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {
@@ -42,15 +42,15 @@ bool isLess(const Mat& points, const Mat& others)
     return std::lexicographical_compare(a, a + points.total(), b, b + others.total());
 }
 
-/** Of matches with these covariances, for the choice among poses: what was located less exactly says less.
-@return none for none. */
+/** Weights of the matches for the choice among poses: less accurate matches count less.
+@return empty without covariances. */
 std::vector<double> weightsOf(InputArray covariances, int count)
 {
     std::vector<double> weights;
     if (covariances.empty())
         return weights;
     Mat rows = covariances.getMat();
-    rows = rows.reshape(1, rows.rows);  // of three channels as of three columns
+    rows = rows.reshape(1, rows.rows);  // three channels are three columns
     if ((rows.depth() != CV_32F && rows.depth() != CV_64F) || rows.size() != Size(3, count))
         CV_Error(Error::StsBadArg, format("findRelativePose: covariances must be %d x 3, CV_32F or CV_64F, "
                                           "as refineMatches gives them",
@@ -59,28 +59,27 @@ std::vector<double> weightsOf(InputArray covariances, int count)
     for (int i = 0; i < count; i++)
     {
         const double variance =
-                rows.at<double>(i, 0) + rows.at<double>(i, 2);  // NaN, infinite: not located at all
+                rows.at<double>(i, 0) + rows.at<double>(i, 2);  // NaN and infinite ones get no weight
         weights.push_back(variance >= 0 ? 1 / std::sqrt(1 + variance) : 0);
     }
     return weights;
 }
 
-//! How far off a pose may be.
+//! The estimated errors of a pose.
 struct PoseErrors
 {
     Square<EpipolarProblem::Step> covariance;
-    EpipolarProblem::Step
-            rival;  //!< the step to another pose that explains the matches as well, which is another answer
+    EpipolarProblem::Step rival;  //!< step to another pose that explains the matches as well
     bool hasRival = false;
 };
 
-/** The covariance of the matches around a pose, and what makes it larger: a direction that may be chance, and other poses that explain
-the matches as well. */
+/** Estimates the covariance of a pose from its matches, then enlarges it if the direction of t is not significant, or if other poses
+explain the matches as well. */
 PoseErrors estimateErrors(
         const EpipolarProblem& problem, const PoseFit& fit, const Mat& points, const Verdict& verdict)
 {
-    const double level = 5;                     // standard deviations: another pose within them is expected
-    const double ofPlane = .05, ofOthers = .1;  // radians: turned by less, it is a larger error
+    const double level = 5;                     // standard deviations: a pose within them is no rival
+    const double ofPlane = .05, ofOthers = .1;  // radians: a pose rotated by less enlarges the error only
     const Square<EpipolarProblem::Step> anyDirection =
             square(LARGEST_DEVIATION) * Square<EpipolarProblem::Step>::diag({0, 0, 0, 1, 1});
     std::vector<int> parts;
@@ -99,7 +98,7 @@ PoseErrors estimateErrors(
                                                                        problem.parameters(), LEAST_NOISE));
     const bool hasDirection = isDirectionCertain(
             fit.squared, problem.leastParallaxes(fit.model, fit.squared, limit), limit, verdict, -1);
-    // Where the direction may be that of a turn, another pose is a rival all the same.
+    // This test is milder: it does not minimize the parallaxes by a rotation first.
     std::vector<double> parallaxes;
     for (int i = 0; i < problem.size(); i++)
         parallaxes.push_back(problem.parallax(fit.model, i, i));
@@ -122,7 +121,7 @@ PoseErrors estimateErrors(
             errors.hasRival = true;
             errors.rival = step;
         }
-        if (step.dot(errors.covariance.inv(DECOMP_SVD) * step) > 1)  // one deviation away, in the end
+        if (step.dot(errors.covariance.inv(DECOMP_SVD) * step) > 1)  // then it is one standard deviation away
             errors.covariance += step * step.t();
         if (norm(Vec2d(step.val + 3)) > ONE_DIRECTION)
             errors.covariance += anyDirection;
@@ -131,7 +130,7 @@ PoseErrors estimateErrors(
     return errors;
 }
 
-//! Why there is no pose; empty if there is one.
+//! Why the pose is refused; empty if it is accepted.
 std::string reasonAgainst(
         const EpipolarProblem& problem, const PoseFit& fit, const PoseErrors& errors, const Verdict& verdict)
 {
@@ -166,7 +165,7 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
                 "findRelativePose: scale, in pixels, must be finite and over 0, or 0, to be chosen");
     Matx33d camera1 = cameraMatrix(cameraMatrix1, "cameraMatrix1"),
             camera2 = cameraMatrix(cameraMatrix2, "cameraMatrix2");
-    // The answer is the same for swapped images: the one whose points come first in the order of numbers is the first.
+    // Sorts the images by their points, so that swapped images get the inverse pose exactly.
     const bool swapped = isLess(second, first);
     if (swapped)
     {

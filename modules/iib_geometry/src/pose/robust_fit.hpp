@@ -11,28 +11,29 @@
 
 namespace cv::iib {
 
-/* Fits a model to matches many of which are wrong. A class Problem holds the matches and has
-    Model, Step     what is sought, and a Vec<double, N> of changes to it
-    int size()      number of matches
+/* Fits a model to matches of which many are wrong. A class Problem holds the matches and has
+    Model, Step                        the fitted model, and a Vec<double, N> of changes to it
+    int size()                         number of matches
+    int sampleSize()                   number of matches that determine a model
     int parameters()                   degrees of freedom of a model, N at most
-    propose(sample, models)            models that agree with a sample: indices of SampleSize matches
-    double loss(model, Loss, limit)    the sum over all matches, or anything over the limit
-    squaredErrors(model, errors)       of all matches, pixels^2; infinite where the model forbids the match
+    propose(sample, models)            models that agree with a sample: indices of sampleSize() matches
+    double loss(model, Loss, limit)    the sum over all matches; any larger number if it exceeds the limit
+    squaredErrors(model, errors)       of all matches, pixels^2; infinite where the model cannot explain the match
     linearize(model, limit, rows)      the rows of matches whose squared error is below the limit
     Model moved(model, step) */
 
-const double FARTHEST = 9;            // three scales
+const double FARTHEST = 9;            // squared scales
 const double FARTHEST_OF_CHOICE = 4;  // scales at which squared errors are cut off when a model is chosen
 
-/** Of a match with squared error r^2, Cauchy's log(1 + r^2 / scale^2), and from `farthest` scales^2 on that of `farthest`: by how far a
-wrong match is wrong says nothing. */
+/** The loss of a squared error r^2: Cauchy's log(1 + r^2 / scale^2), constant from `farthest` scale^2 on. How far a wrong match is
+off carries no information. */
 struct Loss
 {
     double scale;  //!< pixels
     double farthest = FARTHEST;
 };
 
-//! One coordinate of a match's error in pixels, its derivatives, and the squared length of the whole error.
+//! One coordinate of a match's error, pixels: r, its derivatives J, and the squared length r2 of the whole error.
 template <class Step> struct Row
 {
     int match;
@@ -61,16 +62,17 @@ template <int N> void mirror(Matx<double, N, N>& m)
             m(a, b) = m(b, a);
 }
 
-/** Lowers the loss by Levenberg and Marquardt's steps, until one lowers it by less than `enough` of it: with H the sum of w J J',
-w = 1 / (scale^2 + r^2), (H + damping diag H) step = -(sum of w r J) (Hartley and Zisserman 2004, appendix 6.2). */
+/** Minimizes the loss by Levenberg and Marquardt's method (Hartley and Zisserman 2004, appendix 6.2). A step solves
+(H + damping diag H) step = -(sum of w r J), with H the sum of w J J' and w = 1 / (scale^2 + r^2).
+@param enough ends the search: the relative decrease of the loss by one step. */
 template <class Problem>
 void polish(const Problem& problem, const Loss& by, double enough, typename Problem::Model& model)
 {
     typedef typename Problem::Step Step;
     const int rounds = 50;
-    const double most = 1e6;       // of the damping
-    const double nothing = 1e-12;  // of a loss: exact matches have no end else
-    const double least = 1e-12;    // on the diagonal, where the rows do not tell a number at all
+    const double most = 1e6;       // damping
+    const double nothing = 1e-12;  // loss: the relative decrease never ends the search for exact matches
+    const double least = 1e-12;    // on the diagonal, for parameters that the rows do not determine
     const double perScale2 = 1 / square(by.scale);
     double damping = 1e-3, loss = problem.loss(model, by, std::numeric_limits<double>::max());
     std::vector<Row<Step>> rows;
@@ -109,29 +111,29 @@ void polish(const Problem& problem, const Loss& by, double enough, typename Prob
     }
 }
 
-//! What robustFit finds.
+//! The result of robustFit.
 template <class Problem> struct Fit
 {
     typename Problem::Model model;
-    double scale = 0;             //!< under which the model was polished, pixels
-    std::vector<double> squared;  //!< errors of the matches, pixels^2; of none if there is no model
-    int samples = 0;              //!< that were tried
+    double scale = 0;             //!< of the loss that the model was polished under, pixels
+    std::vector<double> squared;  //!< errors of the matches, pixels^2; empty if there is no model
+    int samples = 0;              //!< number of samples that were tried
     double inlierRatio = 0;       //!< share of the matches within three scales
 };
 
-/** Looks for models that many matches agree with. The same in every run.
+/** Searches for models that many matches agree with. Deterministic.
 
-Samples propose models, and those of the least loss are kept. Each is polished under a wider loss in the end: at a narrow scale a model
-that a cluster of wrong matches has drawn to itself may win. */
+Samples propose models, and the models of least loss are kept. At the end each of these is polished under a wider loss: at a narrow
+scale, a cluster of wrong matches may attract the best model. */
 template <class Problem> class Search
 {
 public:
     typedef typename Problem::Model Model;
 
-    /** @param fewest samples that are tried, however many matches agree.
-    @param missed probability that no sample was of right matches alone.
-    @param pool matches that samples are taken from; empty: all.
-    @param likely matches that every other sample is taken from. */
+    /** @param fewest least number of samples.
+    @param missed accepted probability that every sample has a wrong match.
+    @param pool matches to sample from; empty: all.
+    @param likely matches for every second sample. */
     Search(const Problem& problem, const Loss& by, const Loss& wider, int fewest, double missed,
             const std::vector<int>& pool = {}, const std::vector<int>& likely = {})
         : problem_(problem), by_(by), wider_(wider), fewest_(fewest), missed_(missed), pools_{pool},
@@ -144,8 +146,8 @@ public:
             pools_.push_back(likely);
     }
 
-    /** Goes on until so many samples were tried, or enough for as many matches as agree.
-    @return models polished roughly: those of the least loss, the least one first as samples proposed them. */
+    /** Continues until `mostTrials` samples were tried, or enough for the share of matches that agree.
+    @return the models of least loss, polished roughly, in the order of their losses before that. */
     std::vector<Model> upTo(int mostTrials)
     {
         if ((int)pools_[0].size() >= problem_.sampleSize())
@@ -160,16 +162,16 @@ public:
     }
 
     int samples() const { return samples_; }
-    bool wantsMore() const { return samples_ < wanted_; }  //!< whether more samples might find a better one
+    bool wantsMore() const { return samples_ < wanted_; }  //!< whether more samples might find a better model
 
 private:
-    static constexpr double ROUGHLY = 1e-3;  // how much less of its loss a model is polished for
-    static constexpr size_t MOST = 10;       // kept: that of the least loss need not lead to the best one
+    static constexpr double ROUGHLY = 1e-3;  // polish's `enough`
+    static constexpr size_t MOST = 10;  // models kept: the one of least loss need not lead to the best result
     struct Proposal
     {
         std::vector<int> sample;
         std::vector<Model> models;
-        std::vector<double> losses;  // or anything over the limit
+        std::vector<double> losses;  // any larger number over the limit
     };
 
     double limit() const
@@ -177,12 +179,11 @@ private:
         return best_.size() < MOST ? std::numeric_limits<double>::max() : best_.back().first;
     }
 
-    //! Several threads propose at once; models are taken in the order of their samples, by the limit that is then.
+    //! Threads propose models in parallel. Models are kept in the order of their samples, so threads do not change the result.
     void trySamples(int mostTrials)
     {
-        // The fewest samples, 100 or 150, are whole batches.
-        const double batch = getNumThreads() > 1 ? 25 : 1;
-        const size_t expected = 2;  // are polished before: by the better one samples are expected
+        const double batch = getNumThreads() > 1 ? 25 : 1;  // divides `fewest`, 100 or 150
+        const size_t expected = 2;  // models to polish; the better one gives the wanted number of samples
         proposals_.resize(cvCeil(std::min({batch, (double)mostTrials - samples_, wanted_ - samples_})));
         for (size_t i = 0; i < proposals_.size(); i++)
         {
@@ -227,7 +228,7 @@ private:
         better_ |= best_.insert(place, one) == best_.begin();
     }
 
-    //! How many samples are wanted if a model is right.
+    //! Updates the wanted number of samples, assuming that a model is right.
     void expect(Model model)
     {
         polish(problem_, by_, ROUGHLY, model);
@@ -238,7 +239,7 @@ private:
         std::vector<double> squared;
         problem_.squaredErrors(model, squared);
         const double inside = FARTHEST * square(by_.scale);
-        // Fischler and Bolles (1981): samples until one in 1 / missed searches had none of right matches alone.
+        // Fischler and Bolles (1981): log(missed) / log(1 - share of samples without a wrong match)
         double right = 0;
         for (const std::vector<int>& pool : pools_)
         {
@@ -258,13 +259,13 @@ private:
     std::vector<std::vector<int>> pools_;
     RNG random_;
     std::vector<Proposal> proposals_;
-    std::vector<std::pair<double, Model>> best_;  // losses in order, and models
+    std::vector<std::pair<double, Model>> best_;  // losses, ascending, and their models
     double leastLoss_ = std::numeric_limits<double>::max(), wanted_ = leastLoss_;
-    bool better_ = false;  // whether there is a better one than when samples were last expected
+    bool better_ = false;  // whether the best model changed since wanted_ was updated
     int samples_ = 0;
 };
 
-//! Takes the errors of a fit's model, and how many of the matches are near.
+//! Fills in the errors of a fit's model and its inlier ratio.
 template <class Problem> void finish(const Problem& problem, Fit<Problem>& fit)
 {
     problem.squaredErrors(fit.model, fit.squared);
@@ -274,9 +275,9 @@ template <class Problem> void finish(const Problem& problem, Fit<Problem>& fit)
     fit.inlierRatio = (double)count / std::max(problem.size(), 1);
 }
 
-/** The scale of the errors within a distance, by their median (Rousseeuw and Leroy 1987), pixels.
-@param parameters of the model: so many errors are small because it was fitted to them.
-@param least scale, that of refined matches. */
+/** The scale, in pixels, of the errors below a distance, from their median (Rousseeuw and Leroy 1987).
+@param parameters of the model, which reduce the degrees of freedom.
+@param least lower bound of the result. */
 inline double scaleWithin(
         const std::vector<double>& squared, double distance, int parameters, double least = .1)
 {
@@ -292,13 +293,12 @@ inline double scaleWithin(
     return std::max(1.4826 * std::sqrt(*middle * near.size() / free), least);
 }
 
-/** The same, if the errors within the distance are those of right matches: most of them far below it, and few others around it. Else
-matches err by more, or are wrong.
-@return whether they are. */
+/** The same, and whether the errors below the distance look like those of right matches: most are far below it, and few are just
+above it. */
 inline bool findScale(const std::vector<double>& squared, double distance, int parameters, double& scale)
 {
-    const double most = .445;                // of the distance: the scale
-    const double wider = 4, mostMore = 1.5;  // of those within the distance are within so many of it
+    const double most = .445;                // largest scale, of the distance
+    const double wider = 4, mostMore = 1.5;  // within `wider` distances: at most `mostMore` times the errors
     const auto free = [&](double limit) {
         return (double)std::count_if(squared.begin(), squared.end(), [&](double error) {
             return error < square(limit);
@@ -310,10 +310,10 @@ inline bool findScale(const std::vector<double>& squared, double distance, int p
     return scale < most * distance && free(wider * distance) < mostMore * free(distance);
 }
 
-/** The model that most matches agree with. The same in every run.
-@param scale of Cauchy's loss, pixels; 0: the errors tell it. Then scales from that of refined matches upwards are tried, each twice
-    the one before, with few samples, until most errors are far below it.
-@param mostScale by which models are looked for, pixels. */
+/** The model that most matches agree with. Deterministic.
+@param scale of Cauchy's loss, pixels; 0: estimated from the errors. Then scales are doubled, from that of refined matches on, with
+    few samples each, until most errors are far below the scale.
+@param mostScale largest scale to try, pixels. */
 template <class Problem> Fit<Problem> robustFit(const Problem& problem, double scale, double mostScale = .5)
 {
     const double finely = 1e-9, refined = .25, missed = 1e-4;

@@ -11,7 +11,7 @@ namespace {
 
 Vec3d row(const Matx33d& m, int r) { return Vec3d(m(r, 0), m(r, 1), m(r, 2)); }
 
-//! The rotation next to a matrix that is nearly one: rows made orthogonal one after the other.
+//! Makes a nearly orthonormal matrix a rotation (Gram and Schmidt).
 Matx33d orthonormal(const Matx33d& m)
 {
     const Vec3d x = normalize(row(m, 0)), y = normalize(row(m, 1) - x * x.dot(row(m, 1))), z = x.cross(y);
@@ -58,7 +58,7 @@ Vec<double, 5> stepBetween(const RelativePose& pose, const RelativePose& other)
     return Vec<double, 5>(turn[0], turn[1], turn[2], along[0], along[1]);
 }
 
-// Of exp(w) R and t + B a, with B the tangents: R' exp(-w) = exp(-R' w) R', and -R' exp(-w) (t + B a) = -R't - R'(B a + t x w) + ...
+// The inverse of exp(w) R, t + B a, with B the tangents: R' exp(-w) = exp(-R' w) R', -R' exp(-w) (t + B a) = -R't - R'(B a + t x w) + ...
 Matx<double, 5, 5> stepOfInverse(const RelativePose& pose)
 {
     const Matx33d back = pose.R.t() * -1.;
@@ -79,8 +79,8 @@ Matx<double, 5, 5> stepOfInverse(const RelativePose& pose)
     return all;
 }
 
-// Horn, Recovering baseline and orientation from essential matrix, 1990: with E = [t]x R, t t' = tr(EE')/2 - EE',
-// and the matrix of cofactors is t t' R, so that R t't = cofactors - [t]x E; -t belongs to the other rotation.
+// Horn, Recovering baseline and orientation from essential matrix, 1990. With E = [t]x R, t t' = tr(EE')/2 - EE'. The matrix of
+// cofactors is t t' R, so R t't = cofactors - [t]x E. The other rotation comes from -t.
 void posesOf(const Matx33d& essential, RelativePose (&poses)[4])
 {
     const Matx33d square = essential * essential.t();

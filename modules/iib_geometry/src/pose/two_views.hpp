@@ -5,7 +5,7 @@
 
 namespace cv::iib {
 
-//! From the axes of camera 1 to those of camera 2, t of length 1.
+//! Transforms from camera 1's to camera 2's axes; t has length 1.
 struct RelativePose
 {
     Matx33d R;
@@ -19,19 +19,19 @@ inline Matx33d crossProduct(const Vec3d& t)
 
 inline Matx33d essentialOf(const RelativePose& pose) { return crossProduct(pose.t) * pose.R; }
 
-//! Two unit vectors that span with t a right-handed system: b and t x b of findRelativePose's documentation.
+//! Two unit vectors that form a right-handed system with t: b and t x b in findRelativePose's documentation.
 Matx<double, 3, 2> tangentsOf(const Vec3d& t);
 
-//! The pose moved by a rotation vector in the axes of camera 2, and by two angles along the tangents of t.
+//! Changes a pose by a rotation vector in camera 2's axes, and by two angles along the tangents of t.
 RelativePose moved(const RelativePose& pose, const Vec<double, 5>& step);
 
-//! The step by which a pose is moved to another one.
+//! The step that moves `pose` to `other`.
 Vec<double, 5> stepBetween(const RelativePose& pose, const RelativePose& other);
 
-//! The same pose from the axes of camera 2 to those of camera 1.
+//! The pose with the cameras swapped.
 inline RelativePose inverse(const RelativePose& pose) { return {pose.R.t(), -(pose.R.t() * pose.t)}; }
 
-//! What a small step from a pose is as a step from its inverse.
+//! The matrix that converts a small step of a pose to a step of its inverse.
 Matx<double, 5, 5> stepOfInverse(const RelativePose& pose);
 
 //! The four poses of an essential matrix.

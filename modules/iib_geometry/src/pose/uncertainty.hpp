@@ -6,23 +6,22 @@
 
 namespace cv::iib {
 
-/* How far off a fitted model may be. Matches beside each other err together, since their patches overlap and since a shadow moves
-them all, so that their number says little. The covariance has three parts:
-- what the matches' own noise makes of it, as if they were independent: that of an M-estimator (Huber 1981, equation 7.6.2), with
-  a factor for few matches;
-- how much the model changes when a part of the image is left out (delete-a-group jackknife; Shao and Tu 1995, section 2.3), with
-  one step of Newton's from the model in place of a new fit, and a factor for the few parts;
-- what a shift that all matches of a part have in common makes of it, which leaving out parts shows with much chance: SHARED of the
-  matches' variance. It was chosen on rendered places in other light (views.py --seed 21 22 23).
-What all matches have in common is in none of them. */
+/* The covariance of a fitted model. Neighbouring matches have correlated errors, since their patches overlap and a shadow moves them
+together. So the number of matches says little. The covariance is the sum of three parts:
+- The noise of independent matches: the covariance of an M-estimator (Huber 1981, equation 7.6.2), with a factor for few matches.
+- The change of the model when a part of the image is left out (delete-a-group jackknife; Shao and Tu 1995, section 2.3). One
+  Newton step replaces a new fit, and a factor corrects for the few parts.
+- A shift shared by all matches of a part, of SHARED times a match's variance. The jackknife measures it poorly. SHARED was chosen
+  on rendered places under changed illumination (views.py --seed 21 22 23).
+No part includes errors that all matches share. */
 
 const int PARTS_ACROSS = 4, PARTS_DOWN = 3;
-const double FEW_PARTS = 2.5;        // for a variance that a dozen parts tell
+const double FEW_PARTS = 2.5;        // factor for a variance estimated from a dozen parts
 const double SHARED = .2;            // of the variance of a match
-const double LEAST_NOISE = .02;      // pixels: nothing is located more exactly
-const double LARGEST_DEVIATION = 3;  // of what nothing tells, radians: it may be anywhere
+const double LEAST_NOISE = .02;      // pixels: least standard deviation of a match
+const double LARGEST_DEVIATION = 3;  // radians: standard deviation of an undetermined angle
 
-//! Which part of what points span each of them is in, N x 2, CV_64F.
+//! The index of each point's part of the image. Points are N x 2, CV_64F; the parts divide their span.
 inline std::vector<int> partsOf(const Mat& points)
 {
     const Rect2d span = spanOf(points);
@@ -37,8 +36,9 @@ inline std::vector<int> partsOf(const Mat& points)
     return parts;
 }
 
-/** The inverse of a symmetric matrix whose eigenvalues below `least` are raised to it.
-@param unknown if not null: the sum of v v' over the eigenvectors of these, as far as they were raised. */
+/** The inverse of a symmetric matrix, after raising its eigenvalues to at least `least`.
+@param unknown if not null: receives the sum of v v' over the eigenvectors v of raised eigenvalues, weighted by how much each was
+    raised (0 to 1). */
 template <int N>
 Matx<double, N, N> inverseWithFloor(
         const Matx<double, N, N>& m, double least, Matx<double, N, N>* unknown = nullptr)
@@ -60,8 +60,8 @@ Matx<double, N, N> inverseWithFloor(
     return vectors.t() * scaled;
 }
 
-/** A covariance with no deviation above the largest one.
-@param rank least eigenvalue, of the square of the largest deviation: over 1e-15, the covariance has an inverse. */
+/** Limits the standard deviations of a covariance.
+@param rank least eigenvalue, as a share of the square of the largest deviation. Above 1e-15, the covariance is invertible. */
 template <int N>
 Matx<double, N, N> limited(const Matx<double, N, N>& covariance, double largest, double rank = 0)
 {
@@ -74,23 +74,23 @@ Matx<double, N, N> limited(const Matx<double, N, N>& covariance, double largest,
     return vectors.t() * scaled;
 }
 
-/** Covariance of the numbers of a step from a fitted model to the true one.
-@param parts of the image, of each match.
-@param largest deviation of a number, in its unit: what nothing tells has it.
-@param shared part of a match's variance that the matches of a part of the image have in common. */
+/** Covariance of the step from a fitted model to the true one.
+@param parts partsOf() the matches.
+@param largest standard deviation of a parameter, in its unit; undetermined parameters have it.
+@param shared share of a match's variance that all matches of a part have in common. */
 template <class Problem>
 Square<typename Problem::Step> covarianceOf(const Problem& problem, const Fit<Problem>& fit,
         const std::vector<int>& parts, double largest, double shared = SHARED)
 {
     typedef typename Problem::Step Step;
-    const double leastBend = .2;  // the noise is far over the scale
+    const double leastBend = .2;  // reached if the noise is far above the scale
     std::vector<Row<Step>> rows;
     const double perScale2 = 1 / square(fit.scale);
     problem.linearize(fit.model, FARTHEST * square(fit.scale), rows);
     if (rows.empty())
         return Square<Step>::eye() * square(largest);
 
-    // With the weight 1 / (1 + r^2 / scale^2): psi, which is weight times r, squared; its slope; in all.
+    // Sums of psi^2 and of psi's slope, with psi = weight r and weight = 1 / (1 + r^2 / scale^2).
     double influence2 = 0, slope = 0, weights = 0;
     for (const Row<Step>& row : rows)
     {
@@ -101,7 +101,7 @@ Square<typename Problem::Step> covarianceOf(const Problem& problem, const Fit<Pr
     }
     const double count = (double)rows.size(), freedom = std::max(count - problem.parameters(), 1.);
     const double bend = std::max(slope / weights, leastBend), meanSlope = bend * weights / count;
-    // By F's quantiles over those of chi-squared, for 95 % to be inside whatever the few matches tell of their noise.
+    // The ratio of F's to chi-squared's quantiles, so that 95 % intervals also hold for noise estimated from few matches.
     const double few = (std::max(freedom, 3.) + 2) / (std::max(freedom, 3.) - 2);
     const double noise2 = std::max(influence2 / freedom / square(meanSlope) * few, square(LEAST_NOISE));
 
@@ -111,7 +111,7 @@ Square<typename Problem::Step> covarianceOf(const Problem& problem, const Fit<Pr
         Step gradient, along;  //!< sums of weight r J, and of weight J
     };
     std::vector<Part> all(PARTS_ACROSS * PARTS_DOWN);
-    Square<Step> hessian = Square<Step>::zeros(), ofGradient = hessian;  // its covariance
+    Square<Step> hessian = Square<Step>::zeros(), ofGradient = hessian;  // covariance of the gradient
     const std::vector<Square<Step>> noises = problem.noiseInDerivatives(fit.model, rows, noise2);
     for (size_t i = 0; i < rows.size(); i++)
     {

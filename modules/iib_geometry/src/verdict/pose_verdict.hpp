@@ -13,7 +13,7 @@ match. The noise of matches that agree with both poses, as all matches of a plan
 bool explainsMore(const std::vector<double>& squared, const std::vector<double>& otherSquared, double scale,
         const Verdict& verdict);
 
-/** Whether the direction of t is significant. Matches without parallax tell nothing about it. A match whose parallax is much longer than the limit
+/** Whether the direction of t is significant. Matches without parallax do not determine it. A match whose parallax is much longer than the limit
 agrees with a wrong direction by the chance asin(limit / parallax) 2 / pi.
 @param certain logarithm of the false alarms that are allowed; -1 for EpipolarProblem::leastParallaxes(), which leave little to chance. */
 bool isDirectionCertain(const std::vector<double>& squared, const std::vector<double>& parallaxes,

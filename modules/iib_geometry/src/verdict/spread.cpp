@@ -14,12 +14,11 @@ const int CELLS_ACROSS = 8;
 const int LEAST_PLACE = 15, LEAST_MATCHES = 80;  // logos have fewer connected cells, or fewer matches
 const double LEAST_SPREAD = .12;                 // of the keypoints' hull; a logo spans less
 const double LEAST_WHOLE = .05;                  // of the shared area
-// Captions and logos at two ends of a picture have .2 at most, pairs under other light .41 at least.
+// Captions and logos at two ends of a picture have .2 at most, pairs under changed illumination .41 at least.
 const double LEAST_SCATTER = .33;
 
-const double EXACT = 1. / 400;  // of a cell's side, .1 pixels of VGA: largest distance of equal points
-const double LEAST_EXACT =
-        .05;  // of the matches; still cameras in other light have fewer, or fewer unlike cells
+const double EXACT = 1. / 400;    // of a cell's side, .1 pixels of VGA: largest distance of equal points
+const double LEAST_EXACT = .05;   // of the matches; static cameras have fewer, or fewer unlike cells
 const double MOST_CHANGED = .15;  // of the pixel values' deviation: largest difference of equal points
 const double LEAST_UNLIKE = .4;  // of the cells with keypoints of both; a still camera before a crowd has .35
 

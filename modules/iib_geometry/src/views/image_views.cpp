@@ -40,9 +40,9 @@ bool ImageViews::shows(const Point2d& point) const
     return Rect(Point(), size()).contains(pixel) && (mask_.empty() || mask_.at<uchar>(pixel));
 }
 
-std::shared_ptr<const SeenView> ImageViews::extract(const View& view, float angle, const Mat& mask) const
+std::shared_ptr<const DescribedView> ImageViews::extract(const View& view, float angle, const Mat& mask) const
 {
-    const std::shared_ptr<SeenView> found = std::make_shared<SeenView>();
+    const std::shared_ptr<DescribedView> found = std::make_shared<DescribedView>();
     found->fromImage = view.fromImage(size());
     const Mat pixels = view.pixels(image_);
     const Ptr<IIBDescriptorExtractor> extractor = extractorOf(maxFeatures_, angle < 0);
@@ -54,16 +54,16 @@ std::shared_ptr<const SeenView> ImageViews::extract(const View& view, float angl
     return found;
 }
 
-std::shared_ptr<const SeenView> ImageViews::seen(const View& view) const
+std::shared_ptr<const DescribedView> ImageViews::described(const View& view) const
 {
     const std::lock_guard<std::mutex> lock(mutex_);
-    std::shared_ptr<const SeenView>& kept = seen_[view];
+    std::shared_ptr<const DescribedView>& kept = described_[view];
     if (!kept)
         kept = extract(view, -1, view.mask(size(), mask_));
     return kept;
 }
 
-std::shared_ptr<const SeenView> ImageViews::seen(
+std::shared_ptr<const DescribedView> ImageViews::described(
         const View& view, float angle, const std::vector<Point2d>& part) const
 {
     Mat mask(view.sizeOf(size()), CV_8U, Scalar(0));
@@ -149,7 +149,7 @@ std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map)
     return corners;
 }
 
-std::vector<DMatch> matchesOf(const SeenView& first, const SeenView& second)
+std::vector<DMatch> matchesOf(const DescribedView& first, const DescribedView& second)
 {
     std::vector<DMatch> matches;
     if (!first.codes.empty() && !second.codes.empty())

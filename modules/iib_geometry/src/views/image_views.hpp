@@ -19,7 +19,7 @@ struct Described
 };
 
 //! A view of an image, prepared for matching and refinement.
-struct SeenView : Described
+struct DescribedView : Described
 {
     PreparedImage prepared;
     Matx33d fromImage;  //!< from pixels of the image to pixels of the view
@@ -42,12 +42,12 @@ public:
     bool shows(const Point2d& point) const;
 
     //! A view with upright features; cached.
-    std::shared_ptr<const SeenView> seen(const View& view) const;
+    std::shared_ptr<const DescribedView> described(const View& view) const;
 
     /** A view of a part of the image with rotated features; not cached.
     @param angle of all features, degrees.
     @param part corners of a convex part, pixels of the image. */
-    std::shared_ptr<const SeenView> seen(
+    std::shared_ptr<const DescribedView> described(
             const View& view, float angle, const std::vector<Point2d>& part) const;
 
     //! A view prepared for refinement; that of the image itself is cached.
@@ -64,7 +64,7 @@ public:
     Matx33d toCoarse(const View& view) const;
 
 private:
-    std::shared_ptr<const SeenView> extract(const View& view, float angle, const Mat& mask) const;
+    std::shared_ptr<const DescribedView> extract(const View& view, float angle, const Mat& mask) const;
 
     View coarseView() const;
     std::vector<Described> describe(const View& view, const std::vector<float>& angles) const;
@@ -74,7 +74,7 @@ private:
     mutable std::mutex mutex_;
     mutable Mat base_, baseMask_;  //!< reduced image and mask for coarse()
     mutable std::shared_ptr<const PreparedImage> prepared_;
-    mutable std::map<View, std::shared_ptr<const SeenView>> seen_;
+    mutable std::map<View, std::shared_ptr<const DescribedView>> described_;
     mutable std::map<View, std::vector<Described>> coarse_;
 };
 
@@ -83,6 +83,6 @@ private:
 std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map);
 
 //! Matches two views by the recommended matcher.
-std::vector<DMatch> matchesOf(const SeenView& first, const SeenView& second);
+std::vector<DMatch> matchesOf(const DescribedView& first, const DescribedView& second);
 
 }  // namespace cv::iib

@@ -153,7 +153,7 @@ Matx33d similarityOf(const Matx33d& map)
     return {c, -s, map(0, 2), s, c, map(1, 2), 0, 0, 1};
 }
 
-bool areAlike(const Matx33d& map, const Matx33d& other)
+bool haveSimilarViews(const Matx33d& map, const Matx33d& other)
 {
     const Matx33d between = map * other.inv(), turn = similarityOf(between);
     Vec2d scales;

@@ -60,6 +60,6 @@ Matx33d affineAt(const Matx33d& transform, const Point2d& point);
 Matx33d similarityOf(const Matx33d& map);
 
 //! Whether the views of two maps are so similar that images match equally well in both.
-bool areAlike(const Matx33d& map, const Matx33d& other);
+bool haveSimilarViews(const Matx33d& map, const Matx33d& other);
 
 }  // namespace cv::iib

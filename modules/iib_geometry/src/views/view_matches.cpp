@@ -32,7 +32,7 @@ struct Propagated
     std::vector<DMatch> matches;
     Mat points1, points2, covariances, similarities;
 
-    Propagated(const SeenView& first, const SeenView& second, const std::vector<DMatch>& given)
+    Propagated(const DescribedView& first, const DescribedView& second, const std::vector<DMatch>& given)
         : matches(given)
     {
         propagateMatches(first.prepared, first.keypoints, second.prepared, second.keypoints, matches, points1,
@@ -57,7 +57,7 @@ Mat allMoved(const Matx33d& by, const Mat& points)
 }
 
 //! Converts propagated matches to pixels of the images.
-ViewMatches inImages(const Propagated& propagated, const SeenView& first, const SeenView& second)
+ViewMatches inImages(const Propagated& propagated, const DescribedView& first, const DescribedView& second)
 {
     const Matx33d back1 = first.fromImage.inv(), back2 = second.fromImage.inv();
     const Matx22d J = back2.get_minor<2, 2>(0, 0);
@@ -75,13 +75,13 @@ ViewMatches inImages(const Propagated& propagated, const SeenView& first, const 
     return found;
 }
 
-//! @param areOrdinary whether the views are the images themselves: then support by neighbours can be decisive alone.
-ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdinary)
+//! @param areImages whether the views are the images themselves: then support by neighbours can be decisive alone.
+ViewMatches matchTwoViews(const DescribedView& first, const DescribedView& second, bool areImages)
 {
     const std::vector<DMatch> given = matchesOf(first, second);
     Propagated propagated(first, second, given);
     ViewMatches found = inImages(propagated, first, second);
-    if (areOrdinary)
+    if (areImages)
     {
         const std::vector<Point2d> places1 = placesOf(found.points1, {}),
                                    places2 = placesOf(found.points2, {});
@@ -112,8 +112,8 @@ ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdin
             geometry = geometryAgain;
         }
     }
-    if (!areOrdinary && (areOneStructure(placesOf(propagated.points1, geometry.inliers)) ||
-                                areOneStructure(placesOf(propagated.points2, geometry.inliers))))
+    if (!areImages && (areOneStructure(placesOf(propagated.points1, geometry.inliers)) ||
+                              areOneStructure(placesOf(propagated.points2, geometry.inliers))))
         return found;
     if (geometry.count() == 0)
         return found;
@@ -129,20 +129,20 @@ ViewMatches matched(const SeenView& first, const SeenView& second, bool areOrdin
 }
 
 //! Matches the images in the views of a map.
-ViewMatches seenAs(const ImageViews& first, const ImageViews& second, const Matx33d& map)
+ViewMatches matchInViewsOf(const ImageViews& first, const ImageViews& second, const Matx33d& map)
 {
     const ViewPair pair = ViewPair::of(map).within(SMALL, WORKING, first.size(), second.size());
-    return matched(*first.seen(pair.views[0], -1, cornersAround(second.size(), map.inv())),
-            *second.seen(pair.views[1], (float)pair.angle, cornersAround(first.size(), map)), false);
+    return matchTwoViews(*first.described(pair.views[0], -1, cornersAround(second.size(), map.inv())),
+            *second.described(pair.views[1], (float)pair.angle, cornersAround(first.size(), map)), false);
 }
 
 //! Matches again in views of the estimated map, until the map stops changing or inliers are lost.
 void improve(const ImageViews& first, const ImageViews& second, Matx33d map, ViewMatches& best)
 {
-    for (int round = 0; round < MOST_IMPROVED && !areAlike(best.map, map); round++)
+    for (int round = 0; round < MOST_IMPROVED && !haveSimilarViews(best.map, map); round++)
     {
         map = best.map;
-        ViewMatches found = seenAs(first, second, map);
+        ViewMatches found = matchInViewsOf(first, second, map);
         if (found.inliers <= best.inliers)
             return;
         std::swap(found, best);
@@ -155,7 +155,7 @@ bool ViewMatches::isDecisive() const { return logFalseAlarms < DECISIVE; }
 
 ViewMatches matchAsTheyAre(const ImageViews& first, const ImageViews& second)
 {
-    ViewMatches best = matched(*first.seen(View()), *second.seen(View()), true);
+    ViewMatches best = matchTwoViews(*first.described(View()), *second.described(View()), true);
     if (best.isDecisive())
         improve(first, second, Matx33d::eye(), best);
     return best;
@@ -164,9 +164,9 @@ ViewMatches matchAsTheyAre(const ImageViews& first, const ImageViews& second)
 void searchMatches(const ImageViews& first, const ImageViews& second, double maxTilt, ViewMatches& best)
 {
     const int tried = searchViews(first, second, maxTilt, [&](const ViewCandidate& candidate, int) {
-        if (areAlike(candidate.map, Matx33d::eye()))  // matched before the search
+        if (haveSimilarViews(candidate.map, Matx33d::eye()))  // matched before the search
             return false;
-        ViewMatches found = seenAs(first, second, candidate.map);
+        ViewMatches found = matchInViewsOf(first, second, candidate.map);
         if (found.isDecisive())
             improve(first, second, candidate.map, found);
         if (found.logFalseAlarms < best.logFalseAlarms)

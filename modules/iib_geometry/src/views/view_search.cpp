@@ -89,7 +89,7 @@ ViewCandidate compare(const ImageViews& first, const View& view1, const ImageVie
 }  // namespace
 
 int searchViews(const ImageViews& first, const ImageViews& second, double maxTilt,
-        const std::function<bool(const ViewCandidate&, int)>& isAnswer)
+        const std::function<bool(const ViewCandidate&, int)>& tryCandidate)
 {
     if (first.size().empty() || second.size().empty())
         return 0;
@@ -105,14 +105,14 @@ int searchViews(const ImageViews& first, const ImageViews& second, double maxTil
     {
         const ViewCandidate candidate = compare(first, pair.first, second, pair.second, *matcher);
         tried += int(FIRST_ANGLES.size() * SECOND_ANGLES.size());
-        if (candidate.support >= IMMEDIATE && isAnswer(candidate, tried))
+        if (candidate.support >= IMMEDIATE && tryCandidate(candidate, tried))
             return tried;
         if (candidate.support >= LEAST && candidate.support < IMMEDIATE)
             others.push_back(candidate);
     }
     std::stable_sort(others.begin(), others.end());
     for (int k = 0; k < std::min((int)others.size(), MOST_TRIED); k++)
-        if (isAnswer(others[k], tried))
+        if (tryCandidate(others[k], tried))
             break;
     return tried;
 }

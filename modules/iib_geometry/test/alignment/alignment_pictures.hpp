@@ -23,7 +23,7 @@ inline Mat spots(int seed, int count, const Size& size)
     return image;
 }
 
-//! Patches of all sizes, another picture for each seed.
+//! Spots of all sizes; each seed gives another picture.
 inline Mat picture(int seed)
 {
     Mat image = spots(seed, 700, SIZE);
@@ -44,7 +44,7 @@ inline Mat inOtherLight(const Mat& image)
     return result;
 }
 
-//! Moved by a transform from the picture's pixels to the result's, in another light.
+//! Transforms a picture and changes its illumination. @param transform from the picture's pixels to the result's
 inline Mat moved(const Mat& picture, const Matx33d& transform)
 {
     Mat result;
@@ -65,7 +65,7 @@ inline std::vector<Point2d> corners(const Matx33d& transform)
     return result;
 }
 
-//! How far the corners of the image lie from the truth, at most, in pixels.
+//! Largest error of the image's corners, pixels.
 inline double cornerError(const Mat& found, const Matx33d& truth)
 {
     const std::vector<Point2d> a = corners(found), b = corners(truth);

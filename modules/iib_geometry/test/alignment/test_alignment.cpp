@@ -67,8 +67,8 @@ TEST(Alignment, chooses_the_simplest_model_that_is_true)
     EXPECT_EQ(-1, simplest);
 }
 
-//! Drifting ice before a rock: a homography would bend to both.
-TEST(Alignment, chooses_the_transform_of_what_stays)
+//! Like drifting ice before a rock: a homography would fit parts of both.
+TEST(Alignment, chooses_the_transform_of_the_static_part)
 {
     const Mat reference = picture(41), ice = picture(42);
     Mat image = moved(reference, TRANSLATION), transform, drifted, first = reference.clone(), x(SIZE, CV_32F),
@@ -89,8 +89,8 @@ TEST(Alignment, chooses_the_transform_of_what_stays)
     EXPECT_LT(cornerError(transform, TRANSLATION.inv()), .3);
 }
 
-//! Of noise that is white, the errors are neither too small nor too large; of equal images they do not grow with the size.
-TEST(Alignment, errors_are_those_of_noise)
+//! For white noise, the estimated errors are neither too small nor too large. For equal images they do not grow with the size.
+TEST(Alignment, errors_match_white_noise)
 {
     double squares = 0;
     const int trials = 20;
@@ -135,7 +135,7 @@ TEST(Alignment, finds_images_that_are_turned)
     }
 }
 
-//! Of many pixels, and blurred: what the working size finds is refined as far as there is something to refine.
+//! Large sharp images are refined at full size, blurred ones as far as possible.
 TEST(Alignment, finds_large_and_blurred_images)
 {
     Mat large, blurred, transform, error;
@@ -205,7 +205,7 @@ TEST(Alignment, gives_fixed_sizes)
     EXPECT_TRUE(std::isnan(transform(1, 1)) && std::isnan(error[3]));
 }
 
-TEST(Alignment, mistakes_are_told)
+TEST(Alignment, invalid_arguments_are_refused)
 {
     Mat transform;
     EXPECT_THROW(alignImages(picture(5), picture(5), transform, 5), cv::Exception);
@@ -232,10 +232,10 @@ TEST(Alignment, one_reference_serves_many_images_as_each_alone)
     }
 }
 
-TEST(Alignment, looks_at_what_masks_allow)
+TEST(Alignment, matches_only_where_masks_allow)
 {
     Mat reference = picture(1), image = moved(reference, Matx33d(1, 0, -30, 0, 1, -20, 0, 0, 1));
-    const Rect banner(0, 0, 270, 200);  // which stays where it is
+    const Rect banner(0, 0, 270, 200);  // does not move
     picture(2)(banner).copyTo(reference(banner));
     picture(2)(banner).copyTo(image(banner));
     Mat mask(SIZE, CV_8U, Scalar(1)), transform;
@@ -253,7 +253,7 @@ TEST(Alignment, looks_at_what_masks_allow)
         EXPECT_ANY_THROW(ImageAligner::create(reference, ALIGN_TRANSLATION, wrong));
 }
 
-TEST(Alignment, looks_at_what_masks_allow_in_images_that_are_turned)
+TEST(Alignment, matches_only_where_masks_allow_in_rotated_images)
 {
     const Mat reference = picture(2);
     Mat image, mask(SIZE, CV_8U, Scalar(0)), transform, matches;
@@ -268,12 +268,12 @@ TEST(Alignment, looks_at_what_masks_allow_in_images_that_are_turned)
     other.rowRange(200, 400) = 1;
     ASSERT_TRUE(ImageAligner::create(reference, ALIGN_SIMILARITY)
                         ->align(image, transform, noArray(), matches, nullptr, other));
-    for (int i = 0; i < matches.rows; i++)  // refinement moves them
+    for (int i = 0; i < matches.rows; i++)  // refinement moves points by up to two pixels
         ASSERT_TRUE(matches.at<float>(i, 3) > 196 && matches.at<float>(i, 3) < 403);
 }
 
-//! As large as it says, on average over many noisy sets of matches.
-TEST(Alignment, deviation_foretells_the_errors_of_the_corners)
+//! Compares estimated and true errors, averaged over many noisy sets of matches.
+TEST(Alignment, deviation_predicts_the_errors_of_the_corners)
 {
     RNG random(6);
     for (int kind : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})

@@ -3,7 +3,7 @@
 #include "alignment_pictures.hpp"
 #include "opencv2/core/affine.hpp"
 
-// Which alignments are refused, and what is told of those that are found.
+// Which alignments are refused, and the reported errors and notes of accepted ones.
 namespace opencv_test { namespace {
 using namespace cv::iib;
 
@@ -17,7 +17,7 @@ TEST(Alignment, refuses_images_of_other_scenes_and_without_points)
     EXPECT_FALSE(alignImages(Mat(), picture(3), transform));
 }
 
-//! Three spots each: a dozen matches are all that there is, and that no wrong one is near tells little.
+//! Images of three spots have a dozen matches. That none of so few wrong matches is near says little about their chance.
 TEST(Alignment, refuses_a_few_matches_that_agree_by_chance)
 {
     Mat images[2], transform, matches;
@@ -41,13 +41,13 @@ TEST(Alignment, refuses_pictures_that_share_a_part_alone_in_any_model)
             String reason;
             EXPECT_FALSE(alignImages(first, second, transform, model, noArray(), matches, &reason))
                     << side << " " << model;
-            EXPECT_GE(matches.rows, 16) << "the part has enough of them";
+            EXPECT_GE(matches.rows, 16) << "the part has enough matches";
             EXPECT_NE(reason.find("a logo"), String::npos) << reason;
         }
     }
 }
 
-//! A homography bends towards some wrong matches far away, so that all span much.
+//! A homography fits a few distant wrong matches too, so the inliers span a large area.
 TEST(Alignment, refuses_a_part_that_a_homography_joins_with_wrong_matches)
 {
     for (int seed : {27, 30, 60})
@@ -60,7 +60,7 @@ TEST(Alignment, refuses_a_part_that_a_homography_joins_with_wrong_matches)
     }
 }
 
-//! As with a logo in one corner and a caption, or two stamps, between which nothing agrees.
+//! Like a logo in one corner and a caption, or two stamps, with no matches between them.
 TEST(Alignment, refuses_pictures_that_share_two_parts_alone)
 {
     Mat first = picture(11), second = picture(12), transform;
@@ -75,7 +75,7 @@ TEST(Alignment, refuses_pictures_that_share_two_parts_alone)
     }
 }
 
-//! What shows in one of the images alone, by the other's mask or its black sky, could not agree.
+//! The rest of the picture is hidden in one image, by a mask or a black sky, so it has no matches.
 TEST(Alignment, finds_a_part_that_is_all_that_both_images_show)
 {
     const Mat reference = picture(1);
@@ -99,12 +99,12 @@ TEST(Alignment, finds_a_part_that_is_all_that_both_images_show)
     }
 }
 
-//! A caption is no picture.
+//! One image shows nothing but a logo.
 TEST(Alignment, refuses_a_logo_that_is_all_that_an_image_shows)
 {
     const Rect part(10, 10, 80, 80);
     Mat transform;
-    for (bool noisy : {false, true})  // noise has points, too
+    for (bool noisy : {false, true})  // noise has keypoints too
     {
         Mat black = Mat::zeros(SIZE, CV_8U), other = picture(12);
         for (const Mat& image : {black, other})
@@ -121,9 +121,9 @@ TEST(Alignment, refuses_a_logo_that_is_all_that_an_image_shows)
     }
 }
 
-/** Squares of another depth, by a few pixels: the transform of one depth is as wrong of the other. Above the working size as well, where
-matches of one depth alone are refined. */
-TEST(Alignment, tells_what_a_part_of_the_images_is_beside_by)
+/** Half of the squares are at another depth and displaced by a few pixels. The transform fits one depth, and the errors must include
+the displacement of the other. In large images, only matches of one depth are refined at full size. */
+TEST(Alignment, errors_include_the_displacement_of_a_part)
 {
     for (int times : {1, 4})
     {
@@ -148,13 +148,13 @@ TEST(Alignment, tells_what_a_part_of_the_images_is_beside_by)
     }
 }
 
-//! A plane and squares of many depths, of which some are displaced by more than shadows: all of them are part of the error.
-TEST(Alignment, counts_depth_off_the_plane_in_the_error)
+//! A third of the squares is off the plane, some by more than a shadow moves. The errors must include all of them.
+TEST(Alignment, errors_include_depth_off_the_plane)
 {
     const Mat reference = picture(16);
     Mat image = reference.clone(), transform, error;
     for (int k = 0; k < 48; k++)
-        if (k * 7 % 12 >= 8)  // of twelve squares, two by 4 pixels and two by 9 to 16
+        if (k * 7 % 12 >= 8)  // of twelve squares, two are displaced by 4 pixels and two by 9 to 16
         {
             const int by = k * 7 % 12 < 10 ? 4 : 9 + k * 5 % 8;
             const Rect square(k % 8 * 50, k / 8 * 50, std::min(50, 400 - by - k % 8 * 50), 50);
@@ -179,7 +179,7 @@ TEST(Alignment, names_exposure_and_overlap)
     EXPECT_NE(reason.find("overlap"), String::npos) << reason;
 }
 
-//! A part of the picture as large as a third of it is no logo.
+//! A third of the picture is too large for a logo.
 TEST(Alignment, finds_a_part_of_a_picture)
 {
     const Mat whole = picture(14);
@@ -190,7 +190,7 @@ TEST(Alignment, finds_a_part_of_a_picture)
     EXPECT_NEAR(40, transform.at<double>(1, 2), .1);
 }
 
-TEST(Alignment, refuses_a_model_that_is_not_true_and_tells_the_one_that_is)
+TEST(Alignment, refuses_an_untrue_model_and_names_the_true_one)
 {
     const Mat reference = picture(15);
     const Matx33d camera(360, 0, 200, 0, 360, 150, 0, 0, 1);
@@ -222,12 +222,12 @@ TEST(Alignment, refuses_a_model_that_is_not_true_and_tells_the_one_that_is)
     }
 }
 
-//! With more freedom a transform comes nearer to noisy matches of whatever is true.
-TEST(Alignment, noise_makes_no_model_of_more_freedom)
+//! A transform with more freedom always fits noisy matches more closely; this must not refute the true model.
+TEST(Alignment, noise_does_not_refute_a_simple_model)
 {
     const struct
     {
-        int seed, times;  // as large as the picture
+        int seed, times;  // times: the picture's enlargement
         double blur, noise;
     } cases[] = {{100, 1, 5, 15}, {100, 1, 8, 30}, {104, 1, 5, 5}, {103, 2, 6, 30}, {103, 2, 16, 5}};
     for (const auto& c : cases)
@@ -253,8 +253,8 @@ TEST(Alignment, noise_makes_no_model_of_more_freedom)
     }
 }
 
-//! By less than a pixel of the working size, or by so little that it shows at full size alone.
-TEST(Alignment, refuses_a_model_that_is_not_true_of_large_images)
+//! A rotation of less than a pixel at the working size, visible only at full size.
+TEST(Alignment, refuses_an_untrue_model_of_large_images)
 {
     const Size size(3200, 2400);
     for (double pixels : {2., 1.})  // at the corners
@@ -272,8 +272,8 @@ TEST(Alignment, refuses_a_model_that_is_not_true_of_large_images)
     }
 }
 
-//! Walls of many depths: what is nearer moves by more.
-TEST(Alignment, tells_a_camera_that_moved)
+//! Strips at many depths: nearer ones move by more.
+TEST(Alignment, refuses_parallax)
 {
     const Mat wall = picture(16);
     Mat image = inOtherLight(wall), transform;
@@ -288,9 +288,9 @@ TEST(Alignment, tells_a_camera_that_moved)
     EXPECT_NE(reason.find("parallax"), String::npos) << reason;
 }
 
-/** A third of what a camera that stayed sees, a second plane or a block of text below an added line: the rest has a transform, as exact as its matches
-are. */
-TEST(Alignment, finds_what_stays_beside_a_part_that_moved)
+/** A third of the image moves, like a second plane or a block of text below an added line. The rest has a transform that is as exact
+as its matches. */
+TEST(Alignment, finds_the_static_part_beside_a_part_that_moved)
 {
     const Mat picture1 = picture(16);
     for (const Point& by : {Point(8, 0), Point(0, -40)})
@@ -308,8 +308,8 @@ TEST(Alignment, finds_what_stays_beside_a_part_that_moved)
     }
 }
 
-//! Land in a corner, and waves that cannot match beside it.
-TEST(Alignment, finds_a_place_whatever_lies_beside_it)
+//! Like land in a corner of the image, beside waves that cannot match.
+TEST(Alignment, finds_a_place_in_one_part_of_the_image)
 {
     const Matx33d by(1, 0, 3, 0, 1, -2, 0, 0, 1);
     for (double times : {1., 3.})
@@ -330,13 +330,13 @@ TEST(Alignment, finds_a_place_whatever_lies_beside_it)
             const Vec3d corner = Matx33d(transform) * Vec3d(0, 299 * times, 1);
             EXPECT_NEAR((swapped ? 3 : -3) * times, corner[0] / corner[2], 1);
             EXPECT_NE(note.find("one part"), String::npos) << note;
-            EXPECT_GT(error.at<double>(1), 2 * error.at<double>(3)) << "where nothing matches";
+            EXPECT_GT(error.at<double>(1), 2 * error.at<double>(3)) << "far from the matches";
         }
     }
 }
 
-//! A strip such as a car's bonnet, a frame, and four captions: equal to the pixel, or nearly so once they are compressed.
-TEST(Alignment, refuses_what_lies_over_different_pictures)
+//! Different pictures share a strip such as a car's bonnet, a frame, or four captions.
+TEST(Alignment, refuses_overlays_on_different_pictures)
 {
     Mat strip = Mat::zeros(SIZE, CV_8U), frame(SIZE, CV_8U, Scalar(1)), captions = strip.clone(), transform;
     strip.rowRange(220, 300) = 1;

@@ -81,7 +81,7 @@ TEST(Lens, of_colmaps_definitions)
             << "more than a right angle from the axis";
 }
 
-//! Models whose polynomials turn back, and lenses of 140 degrees and more.
+//! Models whose polynomials are not monotonic, and lenses of 140 degrees and more.
 const char* const WIDE[] = {"SIMPLE_RADIAL,640,480,300,320,240,-0.3", "RADIAL,640,480,300,320,240,-0.3,0.05",
         "OPENCV,640,480,300,310,320,240,-0.28,0.06,0.002,-0.003",
         "FULL_OPENCV,640,480,300,310,320,240,-0.3,0.08,0.001,-0.002,-0.01,0.02,-0.01,0.005",
@@ -114,7 +114,7 @@ TEST(Lens, points_farther_from_the_axis_are_seen_farther_or_not_at_all)
                 const double far = (seen.x - matrix(0, 2)) / matrix(0, 0) * std::cos(direction) +
                                    (seen.y - matrix(1, 2)) / matrix(1, 1) * std::sin(direction);
                 if (last < HUGE_VAL && std::isnan(far))
-                    last = HUGE_VAL;  // and no farther point is seen
+                    last = HUGE_VAL;  // beyond the lens's range no point is seen
                 else if (last < HUGE_VAL)
                 {
                     EXPECT_GT(far, last) << degrees;
@@ -144,7 +144,7 @@ TEST(Lens, every_pixel_is_where_its_ray_is_seen)
                 pixels.emplace_back(x, y);
         const std::vector<cv::Point2d> straight = camera.undistorted(pixels);
         const cv::Matx33d back = camera.matrix().inv();
-        // What is seen at 89 degrees or at the lens's range, whichever is less, bounds the pixels that have a ray.
+        // Pixels with a ray lie inside those of points at 89 degrees, or at the lens's range if that is less.
         std::vector<cv::Point3d> rim;
         for (int degrees = 1; degrees < 90; degrees++)
             rim.emplace_back(std::tan(degrees * CV_PI / 180), 0, 1);
@@ -204,7 +204,7 @@ TEST(Lens, cameras_that_are_none)
                           .find("camera model EQUIRECTANGULAR is not one of SIMPLE_PINHOLE, PINHOLE"));
 }
 
-// Of a point's place by the pose; across a line, that alone.
+// The third match is of a line: only its error perpendicular to the line counts.
 TEST(Pose, derivatives_are_those_of_finite_differences)
 {
     const Lens lens(Camera::parse("OPENCV,640,480,500,510,320,240,-0.1,0.05,0.001,-0.002"));

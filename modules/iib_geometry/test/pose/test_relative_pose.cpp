@@ -126,7 +126,7 @@ TEST(RelativePose, is_the_same_again_in_both_depths_and_layouts)
     EXPECT_EQ(0, cvtest::norm(t[0], t[1], NORM_INF));
 }
 
-//! Ten thousand matches of which two agree with whatever is proposed.
+//! Ten thousand matches; the same two agree with every proposed model.
 struct HopelessProblem
 {
     typedef double Model;
@@ -152,8 +152,8 @@ struct HopelessProblem
     double moved(double model, const Step&) const { return model; }
 };
 
-// Of so few right matches no sample of five can be expected: 1 - share^5 is 1 in double precision.
-TEST(RelativePose, hopeless_matches_are_tried_as_often_as_any)
+// A sample without wrong matches cannot be expected: 1 - share^5 is 1 in double precision.
+TEST(RelativePose, hopeless_matches_get_the_most_samples)
 {
     const HopelessProblem problem;
     const Fit<HopelessProblem> fit = robustFit(problem, 1);
@@ -162,7 +162,7 @@ TEST(RelativePose, hopeless_matches_are_tried_as_often_as_any)
     EXPECT_DOUBLE_EQ(2 / 10000., fit.inlierRatio);
 }
 
-//! Models without sense, each of which is its sample's seed: the best one of few depends on which ones those are.
+//! A model is a random number seeded by its sample, so the result depends on every sample that was tried.
 struct SenselessProblem
 {
     typedef uint64 Model;
@@ -189,7 +189,7 @@ struct SenselessProblem
     Model moved(Model model, const Step&) const { return model; }
 };
 
-TEST(RelativePose, is_looked_for_alike_by_every_number_of_threads)
+TEST(RelativePose, does_not_depend_on_the_number_of_threads)
 {
     const int before = getNumThreads();
     for (uint64 seed = 0; seed < 200; seed++)
@@ -219,7 +219,7 @@ TEST(RelativePose, one_match_far_away_changes_little)
     ASSERT_TRUE(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, withFar));
     EXPECT_LT(cv::norm(stepBetween({R, Vec3d(t)}, truth)), .03);
     EXPECT_NEAR(1, std::sqrt(cv::trace(withFar)[0] / cv::trace(covariance)[0]), .5);
-    for (double scale : {1e-200, 1e-3})  // as .1
+    for (double scale : {1e-200, 1e-3})  // raised to .1
     {
         ASSERT_TRUE(findRelativePose(
                 views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), scale, covariance));
@@ -260,17 +260,17 @@ TEST(RelativePose, too_few_matches_are_no_pose)
     EXPECT_TRUE(inliers.empty());
 }
 
-TEST(RelativePose, degenerate_matches_end_without_nonsense)
+TEST(RelativePose, degenerate_matches_give_a_reason_or_a_large_deviation)
 {
     const Mat one(50, 2, CV_32F, Scalar(100));
     Mat line(50, 2, CV_32F), R, t, covariance;
     for (int i = 0; i < 50; i++)
         line.at<Point2f>(i) = Point2f(10.f * i, 5.f * i);
     String reason;
-    EXPECT_FALSE(findRelativePose(
-            one, one, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), .25, covariance, &reason));  // one place
+    EXPECT_FALSE(findRelativePose(one, one, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), .25, covariance,
+            &reason));  // all points are the same
     EXPECT_FALSE(reason.empty());
-    // A camera that did not move, and points on a line: nothing tells a rotation about it, nor t.
+    // The camera did not move and the points are on a line: rotation about the line and t are undetermined.
     if (findRelativePose(line, line, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), .25, covariance, &reason))
     {
         Mat values;
@@ -282,7 +282,7 @@ TEST(RelativePose, degenerate_matches_end_without_nonsense)
         EXPECT_FALSE(reason.empty());
 }
 
-// Angles of a rotation, and that between directions, also large ones.
+// Also for large rotations and large angles between directions.
 TEST(RelativePose, steps_lead_to_other_poses)
 {
     const RelativePose pose = {Matx33d::eye(), Vec3d(1, 0, 0)};
@@ -294,8 +294,8 @@ TEST(RelativePose, steps_lead_to_other_poses)
     EXPECT_NEAR(2, cv::norm(stepBetween(pose, other)), 1e-12);
 }
 
-// Of homographies far from a rotation's scale OpenCV's decomposition gives matrices that are none.
-TEST(RelativePose, rivals_are_rotations_whatever_the_camera)
+// For odd cameras, OpenCV's decomposition of a homography returns matrices that are no rotations.
+TEST(RelativePose, poses_of_a_plane_have_rotations_for_any_camera)
 {
     const Matx33d camera(.001, 0, 320, 0, 500, 240, 0, 0, 1);
     Mat first(12, 2, CV_64F), second(12, 2, CV_64F);
@@ -322,7 +322,7 @@ TEST(RelativePose, rivals_are_rotations_whatever_the_camera)
     EXPECT_GT(count, 0);
 }
 
-TEST(RelativePose, mistakes_are_told)
+TEST(RelativePose, invalid_arguments_are_refused)
 {
     const Mat points(10, 2, CV_32F, Scalar(1)), camera(CAMERA);
     Mat R, t, broken = points.clone(), skewed = camera.clone(), flat = camera.clone();

@@ -8,13 +8,13 @@ using namespace cv::iib;
 
 const double MEDIAN = 4.351, OF_95 = 11.07, OF_99 = 15.09;  // of chi-squared with five degrees of freedom
 
-//! How far poses are from the truth, in what their covariances foretell.
+//! Squared Mahalanobis lengths of the errors of estimated poses.
 struct Coverage
 {
     int trials;
-    std::vector<double> squared;  //!< of the poses that were found
+    std::vector<double> squared;  //!< one for each accepted pose
 
-    //! @param viewsOf a pose. @param scale that is given.
+    //! @param viewsOf makes the views of a pose. @param scale of findRelativePose.
     template <class ViewsOf>
     Coverage(RNG& random, int trials_, const ViewsOf& viewsOf, double scale = 0) : trials(trials_)
     {
@@ -33,7 +33,7 @@ struct Coverage
     }
 
     double found() const { return (double)squared.size() / trials; }
-    //! The share of those found.
+    //! The share of accepted poses within a limit.
     double within(double limit) const
     {
         return (double)std::count_if(squared.begin(), squared.end(), [&](double s) { return s < limit; }) /
@@ -41,9 +41,9 @@ struct Coverage
     }
 };
 
-/* Of independent errors the covariance foretells no less than they are, and not three times as much: it expects that matches
-beside each other err together. */
-TEST(RelativePose, covariance_foretells_the_errors)
+/* Here the matches' errors are independent. The covariance allows for errors that neighbours share, so it is larger than the errors,
+but standard deviations are less than three times as large. */
+TEST(RelativePose, covariance_predicts_independent_errors)
 {
     RNG random(5);
     const Coverage coverage(
@@ -53,8 +53,8 @@ TEST(RelativePose, covariance_foretells_the_errors)
     EXPECT_GE(coverage.within(OF_99), .98);
 }
 
-// Few matches tell their own noise badly: five numbers are fitted to them, and a narrow scale is right of many poses.
-TEST(RelativePose, covariance_foretells_the_errors_of_few_matches)
+// The noise of few matches is underestimated: five parameters are fitted to them, and at a narrow scale many poses fit.
+TEST(RelativePose, covariance_predicts_errors_of_few_matches)
 {
     for (int count : {10, 15, 25})
         for (double noise : {.1, .3, 1.})
@@ -64,14 +64,15 @@ TEST(RelativePose, covariance_foretells_the_errors_of_few_matches)
             const Coverage coverage(random, count == 10 ? 400 : 100,
                     [&](const RelativePose& truth) { return Views(random, truth, count, 0, noise); });
             EXPECT_GE(coverage.found(), count == 10 ? .5 : .95);
-            EXPECT_GE(coverage.within(MEDIAN), count == 25 ? .9 : .8);  // .84 and .77, if not all are used
+            EXPECT_GE(coverage.within(MEDIAN),
+                    count == 25 ? .9 : .8);  // .84 and .77 if the final fit leaves matches out
             EXPECT_GE(coverage.within(OF_95), noise < 1 ? .93 : .9);
             EXPECT_GE(coverage.within(OF_99), noise < 1 ? .94 : .92);
         }
 }
 
-//! The same error in all matches of a part of the image, as a shadow makes it.
-TEST(RelativePose, covariance_knows_of_errors_that_neighbours_share)
+//! All matches of a part of the image have the same error, such as by a shadow.
+TEST(RelativePose, covariance_predicts_errors_that_neighbours_share)
 {
     RNG random(8);
     const Coverage coverage(random, 100, [&](const RelativePose& truth) {
@@ -92,8 +93,8 @@ TEST(RelativePose, covariance_knows_of_errors_that_neighbours_share)
     EXPECT_GT(coverage.within(OF_95), .8);
 }
 
-// Five errors are small since five numbers were fitted to them.
-TEST(RelativePose, a_scale_is_that_of_what_no_number_was_fitted_to)
+// Five parameters were fitted, so the degrees of freedom are five less.
+TEST(RelativePose, a_scale_is_corrected_for_the_fitted_parameters)
 {
     std::vector<double> squared(12, .01);
     double scale = 0;
@@ -104,8 +105,8 @@ TEST(RelativePose, a_scale_is_that_of_what_no_number_was_fitted_to)
     EXPECT_FALSE(findScale(std::vector<double>(5, .01), 1, 5, scale));
 }
 
-// The residuals tell it where none is given, and where one is given that is too narrow by far, at which it cuts errors off.
-TEST(RelativePose, covariance_is_that_of_residuals_of_any_size)
+// Without a scale, and with one that is far too narrow, the covariance comes from the residuals.
+TEST(RelativePose, covariance_is_estimated_from_residuals_of_any_size)
 {
     const struct
     {

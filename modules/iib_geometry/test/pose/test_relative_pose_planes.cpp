@@ -2,19 +2,19 @@
 
 #include "two_cameras.hpp"
 
-// What matches do not tell: of planes, of lines, and of cameras that hardly moved.
+// Poses that matches do not determine: of planes, of lines, and of cameras that hardly moved.
 namespace opencv_test { namespace {
 using namespace cv::iib;
 
-//! Which tells no rotation about the line.
+//! A point on a line. Such points do not determine the rotation about the line.
 Vec3d onLine(RNG& random)
 {
     const double u = random.uniform(-1., 1.);
     return {2 * u, .5 + .7 * u, 7 + 2 * u};
 }
 
-// A baseline of a thousandth of the depth, as tenths of a pixel tell it and pixels do not.
-TEST(RelativePose, points_in_front_tell_the_sign_of_t)
+// The baseline is a thousandth of the depth: noise of .03 pixels leaves the direction of t visible, noise of a pixel does not.
+TEST(RelativePose, points_in_front_determine_the_sign_of_t)
 {
     for (double noise : {.03, 1.})
         for (int wrong : {0, 40})
@@ -43,8 +43,8 @@ TEST(RelativePose, points_in_front_tell_the_sign_of_t)
         }
 }
 
-// Noise may put points that are far away behind a camera.
-TEST(RelativePose, matches_of_a_camera_that_turned_agree)
+// By noise, distant points may seem to be behind a camera.
+TEST(RelativePose, matches_of_a_rotated_camera_are_inliers)
 {
     RNG random(31);
     for (double noise : {.1, 1., 3.})
@@ -59,8 +59,8 @@ TEST(RelativePose, matches_of_a_camera_that_turned_agree)
         }
 }
 
-//! Of matches whose direction of t, or more, nothing tells.
-TEST(RelativePose, what_nothing_tells_has_a_large_deviation)
+//! The matches do not determine the direction of t, or even less.
+TEST(RelativePose, undetermined_parameters_have_a_large_deviation)
 {
     const char* const cases[] = {"far points", "hardly any baseline", "points on a line", "identical images"};
     for (int kind = 0; kind < 4; kind++)
@@ -84,7 +84,7 @@ TEST(RelativePose, what_nothing_tells_has_a_large_deviation)
             String reason;
             if (!findRelativePose(first, second, CAMERA, CAMERA, R, t, inliers, 0, covariance, &reason))
             {
-                EXPECT_EQ(2, kind) << reason;  // points on a line lie on a plane, too
+                EXPECT_EQ(2, kind) << reason;  // points on a line are also on a plane
                 EXPECT_NE(reason.find("two poses"), String::npos) << reason;
                 continue;
             }
@@ -111,18 +111,19 @@ TEST(RelativePose, covariances_have_an_inverse)
         found++;
         eigen(covariance, values);
         EXPECT_GT(values.at<double>(4), 0);
-        EXPECT_GT(values.at<double>(0), 1) << "a rotation that nothing tells";
+        EXPECT_GT(values.at<double>(0), 1) << "an undetermined rotation";
     }
     EXPECT_GE(found, 1);
 }
 
-//! What became of poses of a plane, or of points about it.
+//! Counts the results for points on a plane or near it.
 struct OfPlane
 {
-    int right = 0, wrong = 0, beyond = 0, refused = 0;  //!< beyond: by five deviations and more
+    int right = 0, wrong = 0, beyond = 0,
+        refused = 0;  //!< beyond: errors of five standard deviations or more
 
-    /** @param relief by which part of their distance points are before or behind the plane
-    @param wrongMatches how many of them are anywhere */
+    /** @param relief largest distance of points from the plane, as a share of their depth
+    @param wrongMatches number of matches with random points */
     OfPlane(int trials, int count, double relief, double noise = .2, int wrongMatches = 0)
     {
         for (int trial = 0; trial < trials; trial++)
@@ -156,7 +157,7 @@ struct OfPlane
     }
 };
 
-//! Two poses explain a plane. Where nothing but chance decides between them there is no pose.
+//! Two poses explain a plane. If both explain the matches equally well, there is no pose.
 TEST(RelativePose, of_a_plane_is_right_or_refused)
 {
     for (int count : {200, 800})
@@ -164,16 +165,17 @@ TEST(RelativePose, of_a_plane_is_right_or_refused)
         const OfPlane poses(30, count, 0);
         EXPECT_GE(poses.right, 15) << count;
         EXPECT_GE(poses.refused, 10) << count;
-        EXPECT_LE(poses.wrong, count == 200 ? 1 : 3) << count;  // told, as two poses that differ little
+        EXPECT_LE(poses.wrong, count == 200 ? 1 : 3)
+                << count;  // within their covariance: two poses that differ little
         EXPECT_EQ(0, poses.beyond) << count;
     }
     const OfPlane few(60, 30, 0);
     EXPECT_GE(few.right, 25);
     EXPECT_LE(few.wrong, 3);
-    EXPECT_EQ(0, few.beyond) << "the second pose was looked for";
+    EXPECT_EQ(0, few.beyond) << "the covariance includes the second pose";
 }
 
-// Noise decides between the two poses more often than chance has it, if it is judged by its deviation alone.
+// Noise often makes the wrong pose fit better, by more than its standard deviation suggests.
 TEST(RelativePose, of_a_noisy_plane_is_seldom_beyond_its_errors)
 {
     const OfPlane poses(40, 200, 0, 1.5, 100);

@@ -3,18 +3,18 @@
 #include "two_cameras.hpp"
 #include "verdict/pose_verdict.hpp"
 
-// Which poses are accepted, and how far off they are said to be.
+// Which poses are accepted, and their estimated errors.
 namespace opencv_test { namespace {
 using namespace cv::iib;
 
-struct Found
+struct PoseResult
 {
     bool found;
     RelativePose pose;
     Matx<double, 5, 5> covariance;
     String reason;
 
-    explicit Found(const Views& views)
+    explicit PoseResult(const Views& views)
     {
         found = findRelativePose(views.points1, views.points2, CAMERA, CAMERA, pose.R, pose.t, noArray(), 0,
                 covariance, &reason);
@@ -36,10 +36,10 @@ void append(Views& views, const Point2d& first, const Point2d& second)
     views.points2.push_back(Mat(Matx12d(second.x, second.y)));
 }
 
-//! 1000 points, .1 forward of 4 to 12: noise beside the epipole must not take the direction away. A turn has none.
-TEST(RelativePose, a_short_move_forward_has_a_direction_and_a_turn_has_none)
+//! The camera moves forward by .1, points are 4 to 12 away. Noise near the epipole must not hide the direction of t.
+TEST(RelativePose, a_short_move_forward_has_a_direction_and_a_rotation_has_none)
 {
-    const auto deviation = [](const Found& result) {
+    const auto deviation = [](const PoseResult& result) {
         EXPECT_TRUE(result.found) << result.reason;
         return std::sqrt(result.covariance(3, 3) + result.covariance(4, 4));
     };
@@ -48,7 +48,8 @@ TEST(RelativePose, a_short_move_forward_has_a_direction_and_a_turn_has_none)
     for (int trial = 0; trial < 10; trial++)
     {
         const RelativePose truth = along(random, Vec3d(0, 0, 1));
-        const Found move(Views(random, truth, 1000, 0, .5, .1)), turn(Views(random, truth, 200, 0, .5, 0));
+        const PoseResult move(Views(random, truth, 1000, 0, .5, .1)),
+                turn(Views(random, truth, 200, 0, .5, 0));
         moves += deviation(move) < .25 && move.hasDirection(truth);
         turns += deviation(turn) > 1;
     }
@@ -73,13 +74,13 @@ TEST(RelativePose, captions_among_random_matches_are_refused)
                     append(views, p, p + shift + Point2d(random.gaussian(.1), random.gaussian(.1)));
                 }
             }
-            const Found result(views);
+            const PoseResult result(views);
             EXPECT_FALSE(result.found) << captions << ' ' << trial;
             EXPECT_FALSE(result.reason.empty());
         }
 }
 
-TEST(RelativePose, more_right_matches_are_no_reason_against_it)
+TEST(RelativePose, more_right_matches_never_lose_the_pose)
 {
     const struct
     {
@@ -103,7 +104,7 @@ TEST(RelativePose, more_right_matches_are_no_reason_against_it)
                 see(random, truth, depth * (CAMERA.inv() * pixel), 0, &first.x, &second.x);
                 append(views, first, second);
             }
-            const Found result(views);
+            const PoseResult result(views);
             EXPECT_TRUE(result.found) << scene.count << ' ' << scene.beside << ": " << result.reason;
         }
     }
@@ -115,8 +116,8 @@ TEST(RelativePose, eight_right_matches_are_enough_and_eight_wrong_ones_are_not)
     int right = 0, wrong = 0;
     for (int trial = 0; trial < 40; trial++)
     {
-        right += Found(Views(random, randomPose(random, .2), 8, 0, .1)).found;
-        wrong += Found(Views(random, randomPose(random, .2), 8, 8, 0)).found;
+        right += PoseResult(Views(random, randomPose(random, .2), 8, 0, .1)).found;
+        wrong += PoseResult(Views(random, randomPose(random, .2), 8, 8, 0)).found;
     }
     EXPECT_GE(right, 28);
     EXPECT_EQ(0, wrong);
@@ -128,9 +129,9 @@ TEST(RelativePose, of_swapped_images_is_the_inverse)
     for (int trial = 0; trial < 10; trial++)
     {
         Views views(random, randomPose(random, .2), 60, 30, .5);
-        const Found one(views);
+        const PoseResult one(views);
         std::swap(views.points1, views.points2);
-        const Found other(views);
+        const PoseResult other(views);
         ASSERT_EQ(one.found, other.found);
         EXPECT_EQ(one.reason, other.reason);
         if (!one.found)
@@ -156,7 +157,7 @@ TEST(RelativePose, a_step_from_it_is_a_step_from_its_inverse)
     }
 }
 
-// Wrong matches behind a camera, or of a parallax that no right one has, would make the errors too small.
+// The fit must leave out wrong matches with the parallax of no right one: they would make the estimated errors too small.
 TEST(RelativePose, errors_of_small_parallax_are_realistic_among_wrong_matches)
 {
     const struct
@@ -172,17 +173,17 @@ TEST(RelativePose, errors_of_small_parallax_are_realistic_among_wrong_matches)
         for (int trial = 0; trial < scene.trials; trial++)
         {
             const RelativePose truth = along(random, scene.t);
-            const Found result(Views(random, truth, scene.count, scene.wrong, .5, .3));
+            const PoseResult result(Views(random, truth, scene.count, scene.wrong, .5, .3));
             inside += result.found && result.hasDirection(truth);
         }
         EXPECT_GE(inside, scene.inside) << scene.t;
     }
 }
 
-TEST(RelativePose, a_match_of_odd_parallax_is_no_more_than_chance)
+TEST(RelativePose, a_match_of_unusual_parallax_is_left_out)
 {
     std::vector<double> squared(100, .01), parallaxes(100, 10);
-    for (int i = 50; i < 100; i++)  // fifty wrong ones, of which one is near
+    for (int i = 50; i < 100; i++)  // fifty wrong matches; one is within the limit
     {
         squared[i] = i == 50 ? .01 : 1e4;
         parallaxes[i] = 200;
@@ -194,7 +195,7 @@ TEST(RelativePose, a_match_of_odd_parallax_is_no_more_than_chance)
     EXPECT_TRUE(withinByMoreThanChance(squared, parallaxes, 1)[50]);
 }
 
-// Of 350 matches 49 are right, and not one sample in ten thousand is of these alone.
+// 49 of 350 matches are right; less than one sample in ten thousand is free of wrong matches.
 TEST(RelativePose, is_found_by_few_right_matches_within_half_a_pixel)
 {
     RNG random(69);
@@ -202,7 +203,7 @@ TEST(RelativePose, is_found_by_few_right_matches_within_half_a_pixel)
     for (int trial = 0; trial < 20; trial++)
     {
         const RelativePose truth = randomPose(random, .2);
-        const Found result(Views(random, truth, 350, 301, .25));
+        const PoseResult result(Views(random, truth, 350, 301, .25));
         right += result.found && cv::norm(stepBetween(result.pose, truth)) < .05;
     }
     EXPECT_GE(right, 14);

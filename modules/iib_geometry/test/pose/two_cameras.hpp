@@ -19,21 +19,21 @@ inline RelativePose randomPose(RNG& random, double turn)
     return cv::iib::moved({Matx33d::eye(), normalize(t)}, step);
 }
 
-//! Anywhere in an image, third coordinate 1.
+//! A random pixel of an image, third coordinate 1.
 inline Vec3d anyPixel(RNG& random)
 {
     const double y = random.uniform(0., 480.), x = random.uniform(0., 640.);
     return {x, y, 1};
 }
 
-//! In front of the first camera, 4 to 12 away.
+//! A random point in front of the first camera, at a depth of 4 to 12.
 inline Vec3d anyPoint(RNG& random)
 {
     const Vec3d ray = CAMERA.inv() * anyPixel(random);
     return random.uniform(4., 12.) * ray;
 }
 
-//! Where both cameras see a point, with noise, pixels.
+//! Projects a point to both images. @param noise standard deviation, pixels
 inline void see(RNG& random, const RelativePose& pose, const Vec3d& X, double noise, double* first,
         double* second, double baseline = 1)
 {
@@ -45,7 +45,8 @@ inline void see(RNG& random, const RelativePose& pose, const Vec3d& X, double no
     }
 }
 
-//! Points in front of both cameras, 4 to 12 away, seen with noise, pixels; `wrong` of them anywhere. t has the length `baseline`.
+/** Pixels of points in front of both cameras, at depths of 4 to 12 in camera 1.
+@param wrong number of matches with a random second point. @param noise standard deviation, pixels. @param baseline length of t. */
 struct Views
 {
     Views(RNG& random, const RelativePose& pose, int count, int wrong, double noise, double baseline = 1)
@@ -59,12 +60,12 @@ struct Views
                         seen = CAMERA * Y;
             if (Y[2] < 1)
                 continue;
-            const bool astray = i < wrong;
+            const bool isWrong = i < wrong;
             for (int k = 0; k < 2; k++)
             {
                 points1.at<double>(i, k) = pixel[k] + random.gaussian(noise);
                 points2.at<double>(i, k) =
-                        astray ? random.uniform(0., 480.) : seen[k] / seen[2] + random.gaussian(noise);
+                        isWrong ? random.uniform(0., 480.) : seen[k] / seen[2] + random.gaussian(noise);
             }
             i++;
         }
@@ -72,7 +73,7 @@ struct Views
     Mat points1, points2;
 };
 
-//! N x 2, CV_64F: points that are anywhere in an image.
+//! Random points of an image, N x 2, CV_64F.
 inline Mat anywhere(RNG& random, int count, double width, double height)
 {
     Mat points(count, 2, CV_64F);

@@ -16,11 +16,11 @@ TEST(Verdict, false_alarms_are_few_of_right_matches_and_many_of_wrong_ones)
     some.rowRange(0, 30) = 1;
     EXPECT_LT(logFalseAlarms(right.points1, right.points2, some, true, 1), -20);
     EXPECT_LT(logFalseAlarms(right.points1, right.points2, some, false, 1), -20);
-    none.rowRange(0, 8) = 1;  // as many of 60 as are often near a line
+    none.rowRange(0, 8) = 1;  // about as many of 60 random matches are near epipolar lines by chance
     EXPECT_GT(logFalseAlarms(wrong.points1, wrong.points2, none, true, 1), -3);
     none.rowRange(4, 8) = 0;
     EXPECT_TRUE(cvIsInf(logFalseAlarms(wrong.points1, wrong.points2, none, false, 1)));
-    // Thirty matches in one place are one.
+    // Thirty matches in one place count as one.
     Mat beside = right.points1.clone();
     beside.rowRange(0, 30) = 100;
     EXPECT_TRUE(cvIsInf(logFalseAlarms(beside, right.points2, some, true, 1)));
@@ -30,7 +30,7 @@ TEST(Verdict, false_alarms_are_few_of_right_matches_and_many_of_wrong_ones)
     EXPECT_THROW(logFalseAlarms(beside.rowRange(1, 60), right.points2, some, true, 1), cv::Exception);
 }
 
-TEST(Verdict, matches_drawn_at_random_have_none)
+TEST(Verdict, random_matches_have_no_pose)
 {
     RNG random(9);
     for (int count : {5, 6, 10, 20, 50, 100, 300})
@@ -48,7 +48,7 @@ TEST(Verdict, matches_drawn_at_random_have_none)
         }
 }
 
-//! Where camera 2, of matrix K2, sees points that camera 1 sees at pixels, 4 to 12 lengths of t away.
+//! Projects to camera 2 the points at camera 1's pixels, at depths of 4 to 12 lengths of t. @param noise pixels
 Mat seenAgain(RNG& random, const Mat& pixels, const Matx33d& K1, const Matx33d& K2, const RelativePose& pose,
         double noise)
 {
@@ -64,8 +64,8 @@ Mat seenAgain(RNG& random, const Mat& pixels, const Matx33d& K1, const Matx33d& 
     return seen;
 }
 
-// Counterparts of the wrong matches below.
-TEST(Verdict, right_matches_of_a_skyline_a_small_image_and_a_wide_scale_have_one)
+// The same scenes as those of the wrong matches below.
+TEST(Verdict, right_matches_of_a_skyline_a_small_image_and_a_wide_scale_have_a_pose)
 {
     const Matx33d small(80, 0, 40, 0, 80, 30, 0, 0, 1), large(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
     const RelativePose pose = cv::iib::moved({Matx33d::eye(), Vec3d(.6, .8, 0)}, {.02, .03, .01, 0, 0});
@@ -100,8 +100,8 @@ TEST(Verdict, right_matches_of_a_skyline_a_small_image_and_a_wide_scale_have_one
     }
 }
 
-// Where points gather, more wrong matches agree with a pose than if they were anywhere.
-TEST(Verdict, wrong_matches_of_a_skyline_or_a_strip_have_none)
+// In crowded areas, more wrong matches agree with a pose than if points were uniformly distributed.
+TEST(Verdict, wrong_matches_of_a_skyline_or_a_strip_have_no_pose)
 {
     RNG random(17);
     for (int count : {100, 400})
@@ -123,8 +123,8 @@ TEST(Verdict, wrong_matches_of_a_skyline_or_a_strip_have_none)
         }
 }
 
-// Sampson's error is small wherever it is so in one of the images.
-TEST(Verdict, wrong_matches_of_a_small_image_and_a_large_one_have_none)
+// Sampson's error is small if the distance is small in either image.
+TEST(Verdict, wrong_matches_of_a_small_image_and_a_large_one_have_no_pose)
 {
     RNG random(18);
     const Matx33d small(80, 0, 40, 0, 80, 30, 0, 0, 1), large(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
@@ -139,7 +139,7 @@ TEST(Verdict, wrong_matches_of_a_small_image_and_a_large_one_have_none)
     EXPECT_GT(logFalseAlarms(first, second, Mat::ones(300, 1, CV_8U), true, 1e4), 0);
 }
 
-TEST(Verdict, wide_scales_make_no_pose_of_wrong_matches)
+TEST(Verdict, wrong_matches_have_no_pose_at_wide_scales)
 {
     RNG random(19);
     for (double scale : {5., 20., 30., 200.})
@@ -151,7 +151,7 @@ TEST(Verdict, wide_scales_make_no_pose_of_wrong_matches)
         }
 }
 
-TEST(Verdict, the_span_of_points_is_without_the_outermost)
+TEST(Verdict, the_span_of_points_excludes_the_outermost)
 {
     Mat points(100, 2, CV_64F);
     for (int i = 0; i < points.rows; i++)
@@ -175,8 +175,8 @@ TEST(Verdict, limits_that_are_tried_count)
     EXPECT_EQ(1, best);
 }
 
-// The least probability that a thousand wrong matches can show, for any limit.
-TEST(Verdict, the_chance_of_what_no_wrong_match_does_is_that_of_one_more)
+// If none of a thousand wrong matches is within the limit, the chance is that of one in a thousand and one.
+TEST(Verdict, the_chance_is_positive_without_a_wrong_match_within_the_limit)
 {
     RNG random(22);
     const Verdict verdict(anywhere(random, 60, 640, 480), anywhere(random, 60, 640, 480));
@@ -185,8 +185,8 @@ TEST(Verdict, the_chance_of_what_no_wrong_match_does_is_that_of_one_more)
     EXPECT_NEAR(2 * 800 / (640 * 480.), verdict.chance(Verdict::FROM_LINE, 1, wrong), .001) << "of any line";
 }
 
-// One of many wrong matches in a place agrees by chance. Right matches in one other place must not count for more.
-TEST(Verdict, a_place_of_many_matches_agrees_by_more_chance_than_a_match)
+// In a place with many wrong matches, one of them often agrees by chance. All right matches are in one other place.
+TEST(Verdict, a_place_of_many_matches_agrees_with_a_higher_chance)
 {
     RNG random(20);
     const int wrong = 6000, right = 3000;
@@ -201,7 +201,7 @@ TEST(Verdict, a_place_of_many_matches_agrees_by_more_chance_than_a_match)
     for (int i = 0; i < wrong + right; i++)
         agreeing[i] = i >= wrong || random.uniform(0., 1.) < chance;
     EXPECT_GT(Verdict(points[0], points[1]).logFalseAlarms(all, agreeing, 5, chance), -3);
-    // Four times as many are more than chance.
+    // Four times as many are significant.
     for (int i = 0; i < wrong; i++)
         agreeing[i] = random.uniform(0., 1.) < 4 * chance;
     EXPECT_LT(Verdict(points[0], points[1]).logFalseAlarms(all, agreeing, 5, chance), -3);

@@ -37,7 +37,7 @@ inline v_int16 alternating(short first, short second)
 
 inline v_int32 tripled(const v_int32& v) { return v + v + v; }
 
-//! Of the sums of four rows.
+//! The rounded mean of 4 x 4 pixels weighted 1, 3, 3, 1, from weighted sums of the outer and of the inner rows.
 inline v_int32 mean(const v_int32& outerRows, const v_int32& innerRows)
 {
     return (outerRows + tripled(innerRows) + vx_setall_s32(32)) >> 6;

@@ -19,10 +19,10 @@ enum AlignmentModel
     ALIGN_AUTO         //!< the simplest of these that is true of the images
 };
 
-/** @brief Finds the transform from an image to a reference that was taken in another light.
+/** @brief Estimates the transform from an image to a reference under changed illumination.
 
-It is for images of a plane, and for any scene by a camera that does not move, though it may turn and zoom. Images of a scene with depth from two
-places have no such transform; findRelativePose is for them.
+It is for images of a plane, and for any scene by a camera that does not move; it may rotate and zoom. Images of a scene with depth from two
+places have no such transform: use findRelativePose.
 
 Points are detected in both images, matched and refined (refineMatches), and a transform is fitted to most of the matches. If that fails, views of
 images that are rotated, zoomed or tilted against each other are searched (as in matchViews, for all models but ALIGN_TRANSLATION). Images of more

@@ -121,7 +121,7 @@ struct MapOptions
 Keypoints of each image are described, matched with covisible images, refined (refineMatches), and triangulated. The
 model's poses stay fixed. The map has 150 bytes a keypoint and a grey copy of each image, at most 1024 pixels a side.
 @param model folder of a model, binary or text, in any unit and at any distance from its origin. Images that share
-keypoints' point numbers are covisible; the points themselves are not read. The poses tell how images are rotated, so
+keypoints' point numbers are covisible; the points themselves are not read. The poses say how images are rotated, so
 any rotation is fine.
 @param images reads the model's images. Images that cannot be read, or do not have their camera's size, are left out.
 @param map folder to write: `map.iib`, and a COLMAP model of the same points. An existing map is replaced; concurrent
