@@ -1,8 +1,7 @@
 #!/bin/sh
 # Builds the library in build/ and installs it with its headers, its CMake package and its pkg-config file:
 #   scripts/install.sh [--prefix=FOLDER]
-# The folder is /usr/local unless --prefix says otherwise. What is missing is installed through apt, and sudo is asked
-# for where the user may not write.
+# The default folder is /usr/local. Missing packages are installed with apt; sudo is used where the user cannot write.
 . "$(dirname "$0")/helpers/lib.sh"
 
 prefix=/usr/local

@@ -2,13 +2,12 @@
 # Builds OpenCV's own source with these modules through OPENCV_EXTRA_MODULES_PATH, and runs the tests of C++, of speed
 # (a smoke run) and of Python there.
 #   scripts/intree.sh [--short] [--modules FOLDER] [--source debian|contrib|contrib-5] [options of CMake]
-# --short: what scripts/test.sh has not shown of the same sources: that they build here, give the same bits (golden tests)
-# and the API of C++ and Python; OpenCV is built with little optimization, for AVX512_ICL alone, for which it has no code
-# itself.
+# --short: only what scripts/test.sh does not cover: the in-tree build, golden bits, and the C++ and Python APIs. OpenCV is
+# built with little optimization, for AVX512_ICL only.
 # --modules: the module iib of another folder, alone, its tests of C++, and a smoke run of the speed of the descriptor.
 # debian: the distribution's source of its OpenCV. contrib: the newest OpenCV 4 with opencv_contrib's xfeatures2d,
 # from the source distribution of opencv-contrib-python; contrib-5: the newest OpenCV 5 in the same way.
-# JOBS limits the parallel jobs. The last line tells the build's folder.
+# JOBS limits the parallel jobs. The last line prints the build folder.
 . "$(dirname "$0")/helpers/lib.sh"
 
 dispatch="SSE4_1;SSE4_2;AVX;FP16;AVX2;AVX512_SKX;AVX512_ICL"

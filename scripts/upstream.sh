@@ -10,12 +10,12 @@
 #   iib-kernels     loops over pixels and cells, for each instruction set, not used yet
 #   iib-steps       from images and keypoints to bits by these kernels, not used yet
 #   iib-presets     the descriptor as it is here: all mappings, presets, boxes, orientation, files
-#   iib-bits        its bits beside naive oracles
-#   iib-rotation    matchRotated, and tests of all that rotates
+#   iib-bits        compares its bits with naive oracles
+#   iib-rotation    matchRotated, and tests of rotation
 #   iib-checks      further tests of the descriptor: wrong arguments, files, threads
 #   iib-matching    further tests of the matcher: wrong arguments, files, threads
-#   iib-whole       further tests, speed, samples, tutorials; without test/real, whose images opencv_extra has not
-# The detector comes before the presets, since createRecommended() has both. Before iib-presets, files of upstream/BRANCH replace
+#   iib-whole       further tests, speed, samples, tutorials; without test/real, whose images are not in opencv_extra
+# The detector comes before the presets, since createRecommended() needs both. Before iib-presets, files of upstream/BRANCH replace
 # those of modules/iib. upstream/FROM.BEFORE.patch changes the files of modules/iib in the branches from FROM on, before BEFORE.
 # A pull request's text is its commit's message.
 # Checks each branch as OpenCV would: whitespace, the licence in every source, its size and number of files; and at the first

@@ -18,7 +18,7 @@ FILES = {'text.png': 'not an image', 'flat.pgm': 'P2 64 64 1\n' + 64 * 64 * '0 '
 MISTAKES = [[], [DAY], ['missing.png', NIGHT], ['text.png', NIGHT], ['flat.pgm', 'flat.pgm']] + [
     [DAY, NIGHT, option] for option in (
         '--homography=missing.txt', '--homography=short.txt', '--homography=singular.txt', '--depth=' + DAY, '--out=no-such-folder/picture.png',
-        '--out=picture.unknown')]
+        '--out=picture.unknown')] + [[DAY, NIGHT, '--homography=true.txt', '--depth=' + DAY]]
 # Judged by the truth, matches are correct; by an estimated homography, consistent. The chain wins in each.
 LINE = r'\nIIB ([1-9]\d+) of \d+ {0}, SIFT (\d+) of \d+ {0}, ORB (\d+) of \d+ {0}\n'
 EXPECTED = [([DAY, NIGHT], r'consistent: within 3 pixels of a MAGSAC homography' + LINE.format('consistent')),

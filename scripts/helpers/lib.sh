@@ -25,7 +25,7 @@ done
 
 say() { echo "== $*"; }
 
-# The user's mistake, in one line.
+# Reports a user error in one line and exits with 2.
 fail() {
     echo "$(basename "$0"): $*" >&2
     exit 2
@@ -44,7 +44,7 @@ check_options() {
     done
 }
 
-# check_definitions ARGUMENT...: whether each is one for CMake.
+# check_definitions ARGUMENT...: fails unless every argument is -DNAME=VALUE.
 check_definitions() {
     for argument in "$@"; do
         case "$argument" in
@@ -119,7 +119,7 @@ build_targets() {
     cmake --build "$build" --target "$@"
 }
 
-# build_library TARGET...: the library and what needs no more than that. A new folder gets neither tests nor tools.
+# build_library TARGET...: builds only the library and targets that need nothing else; a new folder has no tests or tools.
 build_library() {
     new_folder="-DIIB_BUILD_TESTS=OFF -DIIB_BUILD_TOOLS=OFF"
     configure

@@ -1,10 +1,8 @@
 #!/bin/sh
-# Runs every command of README.md and of the first program in doc/install.md, in their order, on a bare Debian made by debootstrap, as someone
-# would who has just unpacked a release: what is in the `sh` blocks but for a wheel's, with the files of the `cmake`, `cpp` and `python` blocks.
-# The paths hold spaces. Needs root; the bare system stays in the cache.
+# Runs README's commands and the first program of doc/install.md, in order, on a bare Debian (debootstrap), as a new user
+# would. Paths contain spaces. Needs root; the system is cached.
 #   scripts/helpers/newcomer.sh [SUITE] [WHEEL]    by default bookworm
-# With a wheel, that of scripts/wheel.sh, its commands for a wheel and its Python program alone, in a system without a compiler: from pip
-# to the program's answer in ten seconds.
+# With a WHEEL: installs it without a compiler and runs README's Python program, within ten seconds.
 . "$(dirname "$0")/lib.sh"
 
 wheel=""
@@ -37,7 +35,7 @@ home="$work/root/root"
 mkdir "$home/the repository" "$home/my project"
 copy_tree "$home/the repository"
 cp "$root/tools/synthetic/day.png" "$root/tools/synthetic/night.png" "$home/my project"
-# The blocks as files: commands that speak of match_pair belong to the user's own project.
+# Writes the code blocks to files. Commands that name match_pair run in the user's project.
 "$python3" - "$root" "$home" <<'PYTHON'
 import pathlib
 import re

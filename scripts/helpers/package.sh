@@ -1,6 +1,5 @@
 #!/bin/sh
-# Builds the Debian packages of debian/control in build/debian from a clean copy of what git knows, and checks them with
-# lintian; an error of lintian is one here.
+# Builds the Debian packages in build/debian from a clean copy of the tracked files. Fails on lintian errors.
 . "$(dirname "$0")/lib.sh"
 
 [ $# = 0 ] || fail "takes no argument"

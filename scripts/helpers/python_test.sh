@@ -1,10 +1,10 @@
 #!/bin/sh
 # Installs the Python package into clean virtual environments and runs python/tests there: with pip's newest OpenCV, and
-# with Debian's (python3-opencv). Skips with a word where pip reaches no package index, but for --servers, which fails.
+# with Debian's (python3-opencv). Without a package index it prints a line and skips; with --servers it fails.
 #   scripts/helpers/python_test.sh [--servers] [LIBRARY]
-# --servers: with PostgreSQL, and with Dask's workers in network namespaces, too (root).
-# LIBRARY: the module as a static library of position-independent code, built with the installed OpenCV, as ctest's entry
-# `python` has it, beside which the wheel is left; without it the whole package is built, which takes minutes.
+# --servers: also the tests with PostgreSQL, and with Dask's workers in network namespaces (root).
+# LIBRARY: static library of the module, position-independent, built with the installed OpenCV (as ctest's `python` uses it);
+# the wheel is left beside it. Without it the whole package is built, which takes minutes.
 . "$(dirname "$0")/lib.sh"
 
 servers=""

@@ -11,7 +11,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAIR = [str(ROOT / 'tools/synthetic' / name) for name in ('day.png', 'night.png')]
-# Program: arguments, and what it prints. The query of the last one is the first image: every point finds itself.
+# Program: arguments, expected output. saving_index queries with the first image, so each point finds itself.
 TUTORIALS = {'day_night': (PAIR, r'\d\d+ of \d+ matches agree with\n.*'),
              'relative_pose': ([*PAIR, '700', 'pose.png'], r'\d\d+ of \d+ matches agree with\n.*'),
              'presets': ([], "128 bytes, 22.5 times the keypoint's size\n64 bytes, 22.5 times the keypoint's size\n"),

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Tests what needs servers: python/examples/postgres.py with a PostgreSQL of its own;
-# Dask's workers whose network is cut while they work, each in a network namespace, all within one that ends with the tests (root).
+# Tests that need servers: python/examples/postgres.py with its own PostgreSQL; Dask workers that lose their network, each in
+# its own namespace (root).
 #   scripts/helpers/servers_test.sh PYTHON
 # PYTHON: an interpreter that has the package, psycopg and distributed.
 . "$(dirname "$0")/lib.sh"

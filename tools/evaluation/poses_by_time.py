@@ -147,7 +147,7 @@ def pairs_of(folder):
     return found
 
 
-# Of each detector: how points are matched, how many are looked for, and what finds and matches them.
+# Per detector: matching rule, numbers of points, and what detects and matches.
 RATIO_TEST = 'mutual, a ratio'
 WAYS = {'recommended chain': (RATIO_TEST, (1000, 2000, 4000), Chain), 'ALIKED-n16': ('LightGlue', (1000, 2048), Learned),
         'ORB': (RATIO_TEST, (1000, 4000), orb), 'AKAZE': (RATIO_TEST, (1000,), akaze), 'SIFT': (RATIO_TEST, (1000, 4000), sift),

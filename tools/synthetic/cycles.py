@@ -17,7 +17,7 @@ from scenes import LIGHTS, SCENES, Scene, extrinsics, intrinsics, walk
 from views import BESIDE, MAP_VIEWS, VIEWS
 
 SAMPLES = 12  # rays a pixel; the noise that they leave counts as a sensor's
-# Sun: degrees of azimuth and altitude, strength, tint; strength and tint of the sky; of the lamps.
+# Per light: sun azimuth and altitude (degrees), strength, tint; sky strength, tint; lamp strength.
 SUN = {"noon": (215, 55, 4, (1, .95, .86), 1.0, (.55, .7, 1), 0), "overcast": (215, 60, 0, (1, 1, 1), 1.3, (.8, .85, .9), 0),
        "dusk": (40, 6, 1.4, (1, .5, .25), .22, (.6, .5, .6), .3), "night": (160, 40, .03, (.6, .75, 1), .012, (.4, .5, 1), 1)}
 PLACES = {"court": Scene(1.0, None, [(-0.8, 1.7, 0, -5, 4), (0.5, 1.7, 2, 6, 5), (-0.4, 1.75, 4, -8, 4), (0.6, 1.7, 6, 4, 5)], []),

@@ -121,7 +121,7 @@ PERF_TEST_P(IIB_MatchPair, mutual_and_ratio,
     SANITY_CHECK_NOTHING();
 }
 
-// What a video does for each image of 640 x 480 pixels on two threads: describes 1000 points of ORB, matches them with the last ones.
+// One video frame, 640 x 480, two threads: describes 1000 ORB keypoints and matches them with the previous frame's.
 typedef perf::TestBaseWithParam<std::string> IIB_Frame;
 
 PERF_TEST_P(IIB_Frame, vga, testing::Values("ORB", "default"))

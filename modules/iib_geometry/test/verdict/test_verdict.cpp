@@ -201,7 +201,7 @@ TEST(Verdict, a_place_of_many_matches_agrees_by_more_chance_than_a_match)
     for (int i = 0; i < wrong + right; i++)
         agreeing[i] = i >= wrong || random.uniform(0., 1.) < chance;
     EXPECT_GT(Verdict(points[0], points[1]).logFalseAlarms(all, agreeing, 5, chance), -3);
-    // Four times as many are more than chance.
+    // Four times the expected number is significant.
     for (int i = 0; i < wrong; i++)
         agreeing[i] = random.uniform(0., 1.) < 4 * chance;
     EXPECT_LT(Verdict(points[0], points[1]).logFalseAlarms(all, agreeing, 5, chance), -3);
