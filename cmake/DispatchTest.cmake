@@ -1,5 +1,5 @@
-# OBJECTS, which were compiled for more than the baseline, define no weak symbols: of a template's or an inline function's
-# instances the linker keeps one for the whole library, and that may be an illegal instruction on another processor.
+# Checks that OBJECTS, which are compiled for more than the baseline, define no weak symbols. The linker keeps one instance of a
+# template or inline function for the whole library, which could hold an illegal instruction on another processor.
 # cmake -DOBJECTS=<files> -DNM=<nm> -P DispatchTest.cmake
 if(NOT OBJECTS)
   message(SEND_ERROR "there are no dispatched objects")

@@ -1,5 +1,5 @@
-# Compiles each header of the include folders alone, and those that users include, opencv2/*.hpp, as C++11 and C++20 with
-# every compiler at hand, and accepts no warning.
+# Compiles each header of the include folders alone, and the headers that users include (opencv2/*.hpp) as C++11 and C++20, with
+# every available compiler. Warnings are errors.
 # cmake -DCOMPILERS=<list> -DINCLUDE=<list of folders> -DOPENCV_INCLUDE=<list> -P HeaderTest.cmake
 set(headers "")
 foreach(folder IN LISTS INCLUDE)

@@ -1,6 +1,6 @@
-# ctest entries: one for each suite of the modules' programs of tests, once with all instruction sets and once under each
-# pin WIDEST=DISABLED; a smoke run of the perf tests; the README on the installation; the demo. Those with the label
-# `nightly` are for scripts/test.sh --all.
+# ctest entries: each suite of the modules' test programs, with all instruction sets and under each pin WIDEST=DISABLED; a smoke
+# run of the performance tests; README's programs on an installation; the demo. scripts/test.sh --all also runs those with the
+# label `nightly`.
 if(CMAKE_CROSSCOMPILING)
   return()  # scripts/helpers/emulated.sh and scripts/windows.sh run the programs in an emulator
 endif()
@@ -9,7 +9,7 @@ if(IIB_DISPATCH)
   set(pins AVX512_SKX=AVX512-ICL AVX2=AVX512-SKX,AVX512-ICL SSE4_2=AVX2,AVX512-SKX,AVX512-ICL
     baseline=SSE4.1,SSE4.2,AVX,AVX2,AVX512-SKX,AVX512-ICL)
 endif()
-# A pin that takes nothing from this machine would be the run without one again.
+# Drops pins that disable nothing on this machine.
 if(EXISTS /proc/cpuinfo)
   file(READ /proc/cpuinfo processor LIMIT 8192)
   set(narrower AVX512_SKX AVX2 SSE4_2)
@@ -20,8 +20,8 @@ if(EXISTS /proc/cpuinfo)
     endif()
   endforeach()
 endif()
-# Suites of kernels, which compare every instruction set with naive code over sizes and alignments, run under each pin by
-# day; the others, whose answers cannot differ where those agree, once by day and under each pin by night.
+# Suites of kernels compare every instruction set with naive code over sizes and alignments: they run under each pin on every
+# change. The other suites run under pins only at night, since equal kernels give equal answers.
 set(kernels_of_opencv_test_iib Kernels Hamming Bits Boxes _Rotated GradientOrientation Normalization Refinement Matcher_Sizes Golden InstructionSets)
 set(kernels_of_opencv_test_iib_index MappedIndex)
 set(kernels_of_opencv_test_iib_geometry "")  # has none of its own
@@ -66,7 +66,7 @@ list(REMOVE_DUPLICATES compilers)
 add_test(NAME headers COMMAND "${CMAKE_COMMAND}" "-DCOMPILERS=${compilers}"
   "-DINCLUDE=${IIB_DIR}/include;${IIB_INDEX_DIR}/include;${IIB_GEOMETRY_DIR}/include"
   "-DOPENCV_INCLUDE=${OpenCV_INCLUDE_DIRS}" -P "${PROJECT_SOURCE_DIR}/cmake/HeaderTest.cmake")
-# No source compiles with -ffast-math, and the build's own flags undo it where a user's flags hold it.
+# No source compiles with -ffast-math; the build's flags undo it in a user's flags.
 set(fast_math "${CMAKE_CXX_COMPILER}" -std=c++11 -ffast-math)
 set(source -fsyntax-only -x c++ "-I${IIB_DIR}/include")
 foreach(folder IN LISTS OpenCV_INCLUDE_DIRS)

@@ -1,12 +1,12 @@
-# Target iib_contrib: the descriptors of opencv_contrib's xfeatures2d, which no Debian package has, from the source that
-# scripts/helpers/opencv_contrib_source.py brings, against the OpenCV at hand. Only what cv::Feature2D describes with: no OpenCL,
-# no tables of BoostDesc and VGG, which OpenCV's own build would download; SURF, which is not free, for who asks for it.
+# Target iib_contrib: the descriptors of opencv_contrib's xfeatures2d, which no Debian package has. The source is that of
+# scripts/helpers/opencv_contrib_source.py, built against the installed OpenCV. Leaves out OpenCL, and BoostDesc and VGG, whose
+# tables OpenCV's own build would download. SURF, which is not free, is an option.
 set(xfeatures2d "${IIB_CONTRIB_SOURCE}/opencv_contrib/modules/xfeatures2d")
 if(NOT EXISTS "${xfeatures2d}/src/beblid.cpp")
   message(FATAL_ERROR "IIB_CONTRIB_SOURCE is to be the folder that scripts/helpers/opencv_contrib_source.py prints, "
     "not \"${IIB_CONTRIB_SOURCE}\"")
 endif()
-# Headers that OpenCV's own build generates and its sources ask for. Empty ones mean: no optional feature.
+# Stubs of headers that OpenCV's own build generates: empty ones switch optional features off.
 set(stubs "${CMAKE_CURRENT_BINARY_DIR}/contrib_stubs")
 foreach(stub cvconfig.h cv_cpu_config.h custom_hal.hpp)
   file(WRITE "${stubs}/${stub}" "")

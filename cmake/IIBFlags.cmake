@@ -1,4 +1,4 @@
-# The one place for compiler flags: they hold for the library, the tests and opencv_ts.
+# All compiler flags, of the library, the tests and opencv_ts.
 set(CMAKE_CXX_STANDARD 11)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -11,7 +11,7 @@ else()
   set(IIB_WARNINGS -Wall -Wextra -Wshadow -Wmissing-declarations)
 endif()
 
-# The kernels add numbers in neighbouring lanes by shifts of wider lanes: other bits where the high byte comes first.
+# The kernels add neighbouring lanes by shifts of wider lanes, which gives other bits on big-endian processors.
 include(TestBigEndian)
 test_big_endian(IIB_BIG_ENDIAN)
 if(IIB_BIG_ENDIAN)

@@ -1,6 +1,5 @@
-# For the Python package: OpenCV's targets from a small static OpenCV (core, imgproc, features2d, flann, calib3d), which is
-# built into the user's cache the first time, from the source that scripts/helpers/opencv_contrib_source.py brings. Delete the
-# folder from the cache to build a newer one.
+# For the Python package: a small static OpenCV (core, imgproc, features2d, flann, calib3d). The first run builds it in the user's
+# cache, from the source of scripts/helpers/opencv_contrib_source.py. Delete that folder to build a newer one.
 execute_process(COMMAND "${CMAKE_COMMAND}" -E env --unset=PYTHONPATH  # which hides other packages in an isolated build
     "${Python_EXECUTABLE}" "${root}/scripts/helpers/opencv_contrib_source.py"
   OUTPUT_STRIP_TRAILING_WHITESPACE OUTPUT_VARIABLE source COMMAND_ERROR_IS_FATAL ANY)
@@ -10,7 +9,7 @@ if(CMAKE_CROSSCOMPILING)
   string(APPEND static_opencv "-${CMAKE_SYSTEM_PROCESSOR}")
 endif()
 
-# step ARGUMENT...: of CMake; what it prints goes to a file, whose end is shown if it fails.
+# step ARGUMENT...: runs CMake with its output in a file; prints the end of the file only if it fails.
 function(step)
   execute_process(COMMAND "${CMAKE_COMMAND}" ${ARGV} RESULT_VARIABLE failed OUTPUT_VARIABLE log ERROR_VARIABLE log)
   if(failed)

@@ -1,5 +1,5 @@
-# Writes add_test for each suite of the test program EXE to OUT, and again for each pin WIDEST=DISABLED in PINS. Pins of
-# suites that match nothing in the list KERNELS get the label `nightly`.
+# Writes add_test to OUT for each suite of the test program EXE, without a pin and under each pin WIDEST=DISABLED in PINS. Under
+# pins, suites that match nothing in the list KERNELS get the label `nightly`.
 execute_process(COMMAND "${EXE}" --gtest_list_tests OUTPUT_VARIABLE list COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "(^|\n)[A-Za-z0-9_/]+\\." suites "${list}")
 foreach(kernel IN LISTS KERNELS)

@@ -1,4 +1,4 @@
-# Toolchain: Windows on x86-64, by Debian's MinGW with threads of its own (scripts/windows.sh).
+# Toolchain: Windows on x86-64, by Debian's MinGW with POSIX threads (scripts/windows.sh).
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR AMD64)
 set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)

@@ -1,9 +1,9 @@
 #!/bin/sh
-# What each step from an image to a pose costs on this machine, beside ORB, BFMatcher, optical flow and MAGSAC: opencv_perf_iib,
-# opencv_perf_iib_index and opencv_perf_iib_geometry, several times, with all instruction sets in turn, with AVX2 and with SSE4.2; the least time of each test
-# counts. Prints tables and writes build/speed.csv; the programs' own XML stays in build/speed. With --document the result goes to
-# doc/results, from where the tables of README.md and doc/performance.md and their picture are made anew. --contrib adds BEBLID,
-# TEBLID and LATCH of opencv_contrib, whose source pip brings.
+# Measures each step from an image to a pose on this machine, and ORB, BFMatcher, optical flow and MAGSAC for comparison. It runs
+# opencv_perf_iib, opencv_perf_iib_index and opencv_perf_iib_geometry several times: with all instruction sets, with AVX2, with
+# SSE4.2. The least time of each test counts. Prints tables and writes build/speed.csv; the programs' XML stays in build/speed.
+# --document writes to doc/results and updates README.md, doc/performance.md and their chart.
+# --contrib adds BEBLID, TEBLID and LATCH of opencv_contrib, whose source pip downloads.
 #   scripts/bench.sh [--contrib] [--document] [--rounds=N]
 . "$(dirname "$0")/helpers/lib.sh"
 

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Matches two images of one place with IIB, SIFT and ORB, and writes a picture; without images a pair of this project's, of
-# which the camera moves and the light goes from noon to night. The first run installs what is missing through apt and builds the library in build/.
+# Matches two images of one place with IIB, SIFT and ORB, and writes a picture. Without images it takes a pair of this project:
+# noon, and night from another place. The first run installs missing packages with apt and builds the library in build/.
 #   scripts/demo.sh [IMAGE_A IMAGE_B] [--OPTION=VALUE]...
 # The options, with their defaults:
 table="$(dirname "$0")/../modules/iib/samples/iib_demo.cpp"

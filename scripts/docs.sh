@@ -1,10 +1,9 @@
 #!/bin/sh
-# Makes the site of the documentation in build/docs/html: guides, tutorials and the C++ reference with Doxygen, the reference of
-# the Python package, its examples with what they print and draw, and the pages of results and of localization. Any warning and any
-# dead link is an error. Where pip reaches no package index, the examples stand without their output, and the reference of the Python
-# package without the methods of its extension.
+# Builds the documentation's site in build/docs/html: guides, tutorials, the C++ reference (Doxygen), the Python reference,
+# examples with their output, results and localization. Warnings and dead links are errors. Without a package index the examples
+# have no output, and the Python reference lacks the extension's methods.
 #   scripts/docs.sh [WHEEL]
-# WHEEL: the Python package, if it is built; else it is built, linked with what the tests have built, if they have.
+# WHEEL: the Python package. Without it the package is built, with the tests' static library if there is one.
 . "$(dirname "$0")/helpers/lib.sh"
 
 [ $# -le 1 ] || fail "takes one wheel, not $*"

@@ -1,9 +1,9 @@
 #!/bin/sh
 # Reproduces the paper's experiments on folders of image sequences and writes CSV files, means and one page.
 #   scripts/evaluate.sh [--document] [--contrib [--nonfree]] [--out FOLDER] [options of iib_evaluation] DATA...
-# Results go to results/ unless --out says otherwise; an interrupted run goes on where it stopped. --document puts their
-# summaries and the page into doc/results, from where tables of the README are made anew; --contrib adds the descriptors of
-# opencv_contrib, whose source pip brings (BEBLID, TEBLID, LATCH and more), --nonfree SURF, whose licence is not free.
+# Results go to results/, or to --out FOLDER; an interrupted run continues. --document writes summaries and the page to
+# doc/results and updates the README's tables. --contrib adds the descriptors of opencv_contrib (BEBLID, TEBLID, LATCH and more),
+# whose source pip downloads; --nonfree adds SURF, whose licence is not free.
 . "$(dirname "$0")/helpers/lib.sh"
 
 document="" contrib="" nonfree=OFF

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Formats every C++ source with clang-format and .clang-format: scripts/format.sh [--check]
-# --check changes nothing and ends with an error where a file would change. Generated tables are left out.
-# Versions format differently, and 14.0.6 decides: Debian 12's, or pip's on other systems. Where neither can be had, it says so.
+# --check changes nothing and fails where a file would change. Generated tables are left out.
+# Versions format differently. 14.0.6 is used: Debian 12's, or pip's on other systems. Without either it prints a line.
 . "$(dirname "$0")/helpers/lib.sh"
 
 case "${1:-}" in

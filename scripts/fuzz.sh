@@ -1,10 +1,10 @@
 #!/bin/sh
 # Fuzzes the library with clang's libFuzzer, address and undefined-behaviour sanitizers:
-# scripts/fuzz.sh [--plain] [--keep] [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each, one a core. What
-# is found on the way stays in the cache folder, and 200 of it, chosen anew, begin the next run, of any checkout; an input that fails is
-# kept in build-fuzz/failures and belongs into fuzz/corpus, with a test, once the bug is fixed. --plain leaves the
-# sanitizers out and makes inputs smaller, so that many times as many are compared with the oracles; its corpus is the
-# same. --keep adds the smallest inputs to fuzz/corpus that reach code which none of its own does.
+# scripts/fuzz.sh [--plain] [--keep] [-s SECONDS] [TARGET...]. By default every target of fuzz, 60 seconds each, one per core.
+# New inputs stay in the cache folder; 200 random ones start the next run, of any checkout. A failing input is kept in
+# build-fuzz/failures: once the bug is fixed, add it to fuzz/corpus, with a test.
+# --plain leaves the sanitizers out and makes inputs smaller, so that many more are compared with the oracles.
+# --keep adds the smallest inputs that reach new code to fuzz/corpus.
 . "$(dirname "$0")/helpers/lib.sh"
 
 corpus="$cache/fuzz"

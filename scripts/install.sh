@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds the library in build/ and installs it with its headers, its CMake package and its pkg-config file:
+# Builds the library in build/ and installs it with headers, CMake package and pkg-config file:
 #   scripts/install.sh [--prefix=FOLDER]
 # The default folder is /usr/local. Missing packages are installed with apt; sudo is used where the user cannot write.
 . "$(dirname "$0")/helpers/lib.sh"

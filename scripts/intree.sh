@@ -1,11 +1,11 @@
 #!/bin/sh
-# Builds OpenCV's own source with these modules through OPENCV_EXTRA_MODULES_PATH, and runs the tests of C++, of speed
-# (a smoke run) and of Python there.
+# Builds OpenCV's own source with these modules (OPENCV_EXTRA_MODULES_PATH). Runs the C++ tests, a smoke run of the performance
+# tests, and the Python tests there.
 #   scripts/intree.sh [--short] [--modules FOLDER] [--source debian|contrib|contrib-5] [options of CMake]
 # --short: only what scripts/test.sh does not cover: the in-tree build, golden bits, and the C++ and Python APIs. OpenCV is
 # built with little optimization, for AVX512_ICL only.
-# --modules: the module iib of another folder, alone, its tests of C++, and a smoke run of the speed of the descriptor.
-# debian: the distribution's source of its OpenCV. contrib: the newest OpenCV 4 with opencv_contrib's xfeatures2d,
+# --modules: only the module iib of another folder, its C++ tests, and a smoke run of the descriptor's performance tests.
+# debian: the distribution's OpenCV source. contrib: the newest OpenCV 4 with opencv_contrib's xfeatures2d,
 # from the source distribution of opencv-contrib-python; contrib-5: the newest OpenCV 5 in the same way.
 # JOBS limits the parallel jobs. The last line prints the build folder.
 . "$(dirname "$0")/helpers/lib.sh"
@@ -13,7 +13,7 @@
 dispatch="SSE4_1;SSE4_2;AVX;FP16;AVX2;AVX512_SKX;AVX512_ICL"
 flags=-O3 tests="*" geometry="*" short="" quick=""
 if [ "${1:-}" = --short ]; then
-    # The widest that this machine has, which a test asks for.
+    # A test needs the widest instruction set of this machine.
     dispatch="AVX2"
     ! grep -qw avx512bw /proc/cpuinfo || dispatch="AVX512_SKX"
     ! grep -qw avx512_vpopcntdq /proc/cpuinfo || dispatch="AVX512_ICL"
@@ -21,7 +21,7 @@ if [ "${1:-}" = --short ]; then
     tests="IIB_Golden*:IIB_IO*:IIB_Errors*:IIB_Input*:IIB_KeyPoints*:IIB_MatcherCreate*:IIB_MatcherEdges*:IIB_IndexFile*:IIB_InstructionSets*"
     tests="$tests-*upper_halves*" # which compilers free from -O2 on
     geometry="RelativePose*:Verdict*:Alignment*:Localization*"
-    # Most of the time of OpenCV's objects goes into its headers; it precompiles none where it finds ccache.
+    # Headers take most of OpenCV's compile time, and it does not precompile them if it finds ccache.
     quick="-DENABLE_PRECOMPILED_HEADERS=ON -DENABLE_CCACHE=OFF -DCMAKE_CXX_COMPILER_LAUNCHER= -DWITH_OPENCL=OFF"
     shift
 fi
@@ -52,7 +52,7 @@ debian)
     need $build_packages xz-utils libpng-dev zlib1g-dev python3-dev python3-numpy
     source=$("$root/scripts/helpers/opencv_source.sh")
     build="$source.intree$short"
-    # What Debian's source lacks.
+    # Debian's source lacks these.
     options="-DWITH_QUIRC=OFF -DWITH_PROTOBUF=OFF -DWITH_ADE=OFF -DWITH_JPEG=OFF"
     ;;
 contrib | contrib-5)
@@ -76,7 +76,7 @@ contrib | contrib-5)
     ;;
 esac
 
-# One folder for all copies of the repository: another one's path rebuilds the module alone.
+# All checkouts share one folder: a change of checkout rebuilds only the module.
 exec 8>"$build.lock"
 flock 8
 

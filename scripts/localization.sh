@@ -1,10 +1,10 @@
 #!/bin/sh
-# Shows long-term localization: scripts/localization.sh [--document | OUT]
-# Renders the synthetic walk (once, about an hour of processor time, kept in the user's cache folder), maps it at noon, finds
-# the images of other lights by the Python package, by its command and by a program with SIFT, also with the paper's
-# points, lines and an IMU, and writes index.html with pictures, a video, results.json and localization_setups.csv to OUT
-# (results-localization), --document to doc/localization, from where the tables of doc/paper.md are made anew. With
-# OPENCV_TEST_DATA_PATH set, also finds real photographs (strecha) and looks for photographs of other places. pip brings pycolmap.
+# Measures long-term localization: scripts/localization.sh [--document | OUT]
+# Renders the synthetic walk (once, about an hour of processor time, kept in the cache folder) and maps it at noon. Localizes
+# images under other lights by the Python package, by its command and by a program with SIFT; also with the paper's points, lines
+# and an IMU. Writes index.html with pictures, a video, results.json and localization_setups.csv to OUT (results-localization).
+# --document writes to doc/localization and updates doc/paper.md. With OPENCV_TEST_DATA_PATH it also localizes real photographs
+# (strecha), and photographs of other places. pip downloads pycolmap.
 . "$(dirname "$0")/helpers/lib.sh"
 
 [ $# -le 1 ] || fail "one folder at most, not $#"

@@ -1,9 +1,9 @@
 #!/bin/sh
-# Builds the module and its tests against the installed OpenCV, in build/, and runs them; ends with what was skipped and why.
+# Builds the modules and their tests against the installed OpenCV, in build/, and runs them. Lists skipped tests and why.
 #   scripts/test.sh [--all] [--sanitize[=KIND]] [-DNAME=VALUE for CMake]...
-# --all: those that take long too, which .ci/nightly runs (ctest's label `nightly`).
-# --sanitize: under the address and undefined-behaviour sanitizers, then under the thread sanitizer, each in a build folder
-# of its own, and the short ones in valgrind; KIND is one of these: address,undefined or thread or valgrind.
+# --all: also the long ones, which .ci/nightly runs (ctest's label `nightly`).
+# --sanitize: under the address and undefined-behaviour sanitizers, then under the thread sanitizer, each in its own build
+# folder, and the short ones in valgrind. KIND: one of address,undefined and thread and valgrind.
 . "$(dirname "$0")/helpers/lib.sh"
 
 # run BUILD CMAKE_ARGUMENT...: configures, builds and tests.
@@ -28,11 +28,11 @@ sanitize() {
     sanitizers=$1
     shift
     export TSAN_OPTIONS="suppressions=$root/cmake/sanitizer/threads.supp"
-    # Instructions are no matter of threads, whose sanitizer takes long: no suite under a pin, named NAME [PIN].
+    # The thread sanitizer is slow, and threads do not depend on instruction sets: it skips suites under a pin, NAME [PIN].
     [ "$sanitizers" != thread ] || chosen="$chosen --exclude-regex \\["
-    # Where each block of memory was allocated is not recorded, which took a third of the time: who looks at a report sets it.
+    # Recording where memory was allocated took a third of the time: set it to read a report.
     export ASAN_OPTIONS="malloc_context_size=0:${ASAN_OPTIONS:-}"
-    # Little optimization, since instrumented code takes long to compile. The tools are no library: by night.
+    # Little optimization, since instrumented code takes long to compile. Tools are tested at night.
     run "$root/build-$(echo "$sanitizers" | tr , -)" "-DIIB_SANITIZE=$sanitizers" "-DIIB_BUILD_TOOLS=$all" \
         -DCMAKE_CXX_FLAGS_RELEASE=-O1 "$@"
 }

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Learns a selection: scripts/train.sh --out=selection.yml FOLDER...; build/tools/training/iib_train --help lists the options.
-# With --presets or --presets=FILE first it trains the built-in presets, in their place or into FILE, on tilde_webcam and amos_daynight,
-# which lie in $OPENCV_TEST_DATA_PATH/illumination, and on the walks in FOLDER, which is WALKS/path of
+# --presets or --presets=FILE, as the first argument: trains the built-in presets, in their place or into FILE, on tilde_webcam
+# and amos_daynight of $OPENCV_TEST_DATA_PATH/illumination, and on the walks in FOLDER. FOLDER is WALKS/path of
 # scripts/helpers/synthetic.sh WALKS --scenes room terrain --frames 20 --quick
 . "$(dirname "$0")/helpers/lib.sh"
 

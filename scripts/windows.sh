@@ -1,8 +1,8 @@
 #!/bin/sh
 # Cross-compiles OpenCV, the modules and their tests for Windows with Debian's MinGW, and runs the tests under Wine.
 #   scripts/windows.sh [--gtest_...]
-# OpenCV's source is that of the newest opencv-contrib-python 4, which pip brings: Debian's lacks PNG. The first time
-# takes about half an hour on two cores.
+# OpenCV's source is that of the newest opencv-contrib-python 4, from pip: Debian's lacks PNG. The first run takes about half an
+# hour on two cores.
 . "$(dirname "$0")/helpers/lib.sh"
 
 for argument in "$@"; do

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the demo on its pair, and with each mistake a user can make (one line, exit code 2): demo_test.py DEMO OPENCV_VERSION"""
+"""Runs the demo on its pair, and with user mistakes (one line, exit code 2): demo_test.py DEMO OPENCV_VERSION"""
 import os
 import pathlib
 import re
@@ -19,7 +19,7 @@ MISTAKES = [[], [DAY], ['missing.png', NIGHT], ['text.png', NIGHT], ['flat.pgm',
     [DAY, NIGHT, option] for option in (
         '--homography=missing.txt', '--homography=short.txt', '--homography=singular.txt', '--depth=' + DAY, '--out=no-such-folder/picture.png',
         '--out=picture.unknown')] + [[DAY, NIGHT, '--homography=true.txt', '--depth=' + DAY]]
-# Judged by the truth, matches are correct; by an estimated homography, consistent. The chain wins in each.
+# By the true homography matches are "correct", by an estimated one "consistent". IIB has the most in each.
 LINE = r'\nIIB ([1-9]\d+) of \d+ {0}, SIFT (\d+) of \d+ {0}, ORB (\d+) of \d+ {0}\n'
 EXPECTED = [([DAY, NIGHT], r'consistent: within 3 pixels of a MAGSAC homography' + LINE.format('consistent')),
             ([DAY, NIGHT, '--homography=true.txt'], r'correct: within 3 pixels of the truth' + LINE.format('correct')),

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Cross-compiles the modules and their tests for another processor and runs those of descriptors, matching, files and poses under
-# qemu-user: golden hashes included.
+# Cross-compiles the modules and their tests for another processor. Runs the tests of descriptors (with golden hashes), matching,
+# files and poses under qemu-user.
 #   scripts/helpers/emulated.sh arm64|armhf [--gtest_...]      64 bits with NEON; 32 bits without
 #   scripts/helpers/emulated.sh arm64 --wheel                  the wheel for Debian's Python, and python/tests with it
-# The packages of the architecture come from the machine's own apt mirror and are unpacked in the cache; the system's
-# package database does not change. The options go to the test programs: scripts/helpers/emulated.sh arm64 --gtest_filter='IIB_Golden*'
+# The architecture's packages come from the machine's apt mirror and are unpacked in the cache; the system's package database
+# does not change. Options go to the test programs: scripts/helpers/emulated.sh arm64 --gtest_filter='IIB_Golden*'
 . "$(dirname "$0")/lib.sh"
 
 architecture="${1:-}"
@@ -54,7 +54,7 @@ if [ ! -d "$sysroot" ]; then
 fi
 
 if [ -n "$wheel" ]; then
-    # Only Python runs under qemu, and that of the environments made from it; CMake and the compilers are this machine's.
+    # Only Python and its environments run under qemu; CMake and the compilers are this machine's.
     python="$sysroot/usr/bin/python3-emulated"
     cat >"$python" <<EOF
 #!/bin/sh
@@ -93,7 +93,7 @@ configure -DIIB_BUILD_TOOLS=OFF "-DOpenCV_DIR=$libraries/cmake/opencv4" \
     "-DCMAKE_EXE_LINKER_FLAGS=-Wl,-rpath-link,$path" "-DCMAKE_SHARED_LINKER_FLAGS=-Wl,-rpath-link,$path"
 programs="opencv_test_iib opencv_test_iib_index opencv_test_iib_geometry"
 build_targets $programs
-# Of iib_geometry a part, so that the night's step stays below 90 minutes.
+# Only a part of iib_geometry, so that the nightly step stays below 90 minutes.
 poses="RelativePose*:Verdict*:Localization.under_changed_illumination:Alignment.finds_each_kind*"
 # A kernel of 64 bits gives positions in folders of ext4 that C's library of 32 bits refuses; in memory they are small.
 [ ! -d /dev/shm ] || export OPENCV_TEMP_PATH=/dev/shm

@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
-"""The picture of includes of modules, which CONTRIBUTING.md has: includes_test.py [--draw] FOLDER...; with --draw it is written anew.
+"""Checks the includes of modules and their diagram in CONTRIBUTING.md: includes_test.py [--draw] FOLDER...; --draw writes the diagram.
 
-It reads the sources, since it is about them. Arrows between folders point downwards only, no file includes itself by way of
-others, where a header and the source of the same name count as one, nothing leaves the module but for what tests share (what modules share is in opencv2/iib/detail), and raw
-intrinsics stand in one file.
+- Arrows between folders point downwards only.
+- No file includes itself through others; a header and the source of the same name count as one file.
+- Modules include each other's public headers and opencv2/iib/detail only; tests may share more.
+- Raw intrinsics stand in one file.
 """
 import pathlib
 import re
 import sys
 
-# What a folder below src may include, besides precomp.hpp; the rest of the module includes what it likes.
+# Folders below src: what each may include, besides precomp.hpp. The rest of a module is free.
 ALLOWED = {'': {''}, 'common': {'common'}, 'rotation': {'rotation', 'common'}}
 ALLOWED['verdict'] = {'verdict', 'common'}  # of iib_geometry
 ALLOWED['pose'] = {'pose', *ALLOWED['verdict']}
@@ -24,7 +25,7 @@ for wing in ('detector', 'refinement'):
     ALLOWED[wing].add('normalization')
 ALLOWED['detector'].add('normalization/kernels')  # halves the normalized image, too
 ALLOWED['descriptor'].add('detector')  # an extractor writes and reads the file of its detector
-#: What tests of other modules may include of iib, and how many files each module has at least.
+#: Files of iib that tests of other modules may include; least number of files of each module.
 SHARED = ('iib/test/support/*.hpp', 'iib/perf/matcher.hpp')
 FILES = {'iib': 80, 'iib_index': 10, 'iib_geometry': 50}
 INTRINSICS = re.compile(r'(?:^|[^a-zA-Z_])(?:_mm[0-9]*_|__m(?:128|256|512)|v[a-z]+q_[a-z]*[0-9])', re.MULTILINE)

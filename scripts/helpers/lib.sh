@@ -1,7 +1,6 @@
 # shellcheck shell=sh
-# Shared by all scripts; sourced first, with the script's own arguments. Sets root (the repository), cache, build
-# and jobs, and answers --help with the comment at the head of the script, and what its function more_help prints if
-# it has one, before anything is installed or built.
+# Shared by all scripts; sourced first, with the script's own arguments. Sets root (the repository), cache, build and jobs.
+# --help prints the comment at the head of the script, and the output of its function more_help if it has one.
 set -eu
 root=$(cd "$(dirname "$0")" && pwd)
 root=${root%/helpers}
@@ -9,7 +8,7 @@ root=${root%/*}  # of scripts/ or .ci/
 cache="${XDG_CACHE_HOME:-$HOME/.cache}/opencv_iib"
 jobs=$(getconf _NPROCESSORS_ONLN)
 
-# The Python of every script: the system's, for which apt installs packages, whichever pyenv or conda puts first in the PATH.
+# The Python of every script: the system's, for which apt installs packages, even if pyenv or conda is first in the PATH.
 python3=${IIB_PYTHON:-/usr/bin/python3}
 [ -n "${IIB_PYTHON:-}" ] || [ -x "$python3" ] || python3=python3
 
@@ -31,8 +30,8 @@ fail() {
     exit 2
 }
 
-# check_options SOURCE ARGUMENT...: whether the tool with these KEYS in its source has the options, to be asked before anything is
-# installed for it; their values it checks itself.
+# check_options SOURCE ARGUMENT...: fails for options that are not among the KEYS in the tool's source, before anything is installed.
+# The tool checks their values.
 check_options() {
     keys=$(sed -n 's/^ *"{\([a-z-]*\) *|.*/\1/p' "$1")
     shift
@@ -54,7 +53,7 @@ check_definitions() {
     done
 }
 
-# check_suites SUITE...: whether each may be the name of a release of Debian or Ubuntu.
+# check_suites SUITE...: fails unless each looks like the name of a release of Debian or Ubuntu.
 check_suites() {
     for suite in "$@"; do
         case "$suite" in
@@ -63,7 +62,7 @@ check_suites() {
     done
 }
 
-# The images of the tests, where they lie beside the repository.
+# Finds the tests' images beside the repository.
 find_data() {
     if [ -z "${OPENCV_TEST_DATA_PATH:-}" ] && [ -d "$root/../shared/data" ]; then
         OPENCV_TEST_DATA_PATH=$(cd "$root/../shared/data" && pwd)
@@ -71,7 +70,7 @@ find_data() {
     fi
 }
 
-# need PACKAGE...: installs those Debian packages that are missing.
+# need PACKAGE...: installs missing Debian packages.
 need() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
         say "no apt on this system; these Debian packages, or what equals them, must be there: $*"
@@ -96,16 +95,15 @@ need() {
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q -y install --no-install-recommends $missing
 }
 
-# The stand-alone build of the whole project.
-# With make, which CMake takes by default, as README's own project does.
+# For the stand-alone build; make is CMake's default, for README's own project.
 compiler_packages="g++ cmake make ninja-build"
 build_packages="$compiler_packages pkg-config libopencv-dev"
 pages_packages="python3-pandas python3-jinja2 python3-matplotlib"  # of tools/pages
 
-# The one build folder of demo, installation, tests and tools, so that the library is compiled once.
+# Demo, installation, tests and tools share one build folder, so that the library is compiled once.
 build="$root/build"
 
-# configure CMAKE_ARGUMENT...: says only what a person should read. A folder that exists keeps its generator and what it builds.
+# configure CMAKE_ARGUMENT...: prints warnings only. An existing folder keeps its generator and targets.
 new_folder=""
 configure() {
     [ -f "$build/CMakeCache.txt" ] || set -- -G Ninja $new_folder "$@"
@@ -113,7 +111,7 @@ configure() {
     cmake -S "$root" -B "$build" --log-level=NOTICE "$@"
 }
 
-# build_targets TARGET...: of the folder that was configured.
+# build_targets TARGET...: builds targets of the configured folder.
 build_targets() {
     say "building $*"
     cmake --build "$build" --target "$@"
@@ -126,7 +124,7 @@ build_library() {
     build_targets "$@"
 }
 
-# quietly LOG COMMAND...: prints the end of what it wrote if it fails.
+# quietly LOG COMMAND...: prints the end of the output only if the command fails.
 quietly() {
     log=$1
     shift
@@ -136,19 +134,19 @@ quietly() {
     }
 }
 
-# copy_tree FOLDER: the files that git knows or would add, into an existing folder.
+# copy_tree FOLDER: copies files that git tracks or would add into an existing folder.
 copy_tree() {
     git -C "$root" ls-files -z --cached --others --exclude-standard | tar -C "$root" --null -T - -c | tar -C "$1" -x
 }
 
-# reach_network ROOT: a system in a folder has this one's names of hosts, and of pip's index and certificates where it has its own.
+# reach_network ROOT: copies this system's DNS settings, pip index and certificates into the system in a folder.
 reach_network() {
     for file in /etc/resolv.conf /etc/hosts /etc/pip.conf /etc/ssl/certs/ca-certificates.crt; do
         [ ! -f $file ] || cp $file "$1$file"
     done
 }
 
-# within ROOT [NAME=VALUE]... COMMAND...: in that system, with a mount namespace of its own, so that nothing stays mounted.
+# within ROOT [NAME=VALUE]... COMMAND...: runs a command in that system, in its own mount namespace, so that nothing stays mounted.
 within() {
     system=$1
     shift
@@ -156,7 +154,7 @@ within() {
         PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin "$@"
 }
 
-# contrib_checkout FOLDER: a repository that stands in for opencv_contrib.
+# contrib_checkout FOLDER: makes a repository in place of opencv_contrib.
 contrib_checkout() {
     git init -q "$1"
     git -C "$1" config user.name test
@@ -169,21 +167,21 @@ contrib_checkout() {
 
 project_version() { sed -n 's/^project(opencv_iib VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt"; }
 
-# The commit that is measured; "dirty" where files differ from it, but for those into which figures are written.
+# The measured commit; "dirty" if files differ from it, other than those that receive figures.
 measured_commit() {
     commit=$(git -C "$root" rev-parse --short HEAD 2>/dev/null) || commit=unknown
     [ "$commit" = unknown ] || git -C "$root" diff --quiet HEAD -- . ':!doc' ':!README.md' || commit="$commit, dirty"
     echo "$commit"
 }
 
-# The argument of configure with which the tools have the descriptors of opencv_contrib.
+# The argument of configure that gives the tools the descriptors of opencv_contrib.
 contrib_argument() {
     need python3-venv >&2
     contrib=$("$python3" "$root/scripts/helpers/opencv_contrib_source.py" 4)
     echo "-DIIB_CONTRIB_SOURCE=$contrib"
 }
 
-# build_tools [-DNAME=VALUE]... TARGET...: programs of tools/, below $build/tools.
+# build_tools [-DNAME=VALUE]... TARGET...: builds programs of tools/, below $build/tools.
 build_tools() {
     new_folder="-DIIB_BUILD_TESTS=OFF"
     definitions=""

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Prints the folder of the newest OpenCV source with opencv_contrib beside it, from the source distribution of
-opencv-contrib-python, which pip brings into the cache once: `opencv` and `opencv_contrib` in that folder. Delete it from
-the cache to look for a newer one. Windows and macOS too.
+opencv-contrib-python, which pip downloads into the cache once: `opencv` and `opencv_contrib` in that folder. Delete it from
+the cache to get a newer one. Works on Windows and macOS too.
 
-    scripts/helpers/opencv_contrib_source.py [MAJOR]      4, or 5; 4 unless it is said
+    scripts/helpers/opencv_contrib_source.py [MAJOR]      4 (default) or 5
 """
 import glob
 import os

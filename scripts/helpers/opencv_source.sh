@@ -1,6 +1,6 @@
 #!/bin/sh
-# Prints the folder of the OpenCV source that belongs to the installed libopencv-core-dev. The first run
-# fetches it from the machine's own apt mirror into the cache; nothing of the system's apt changes.
+# Prints the folder of the OpenCV source of the installed libopencv-core-dev. The first run downloads it from the machine's apt
+# mirror into the cache; the system's apt settings do not change.
 . "$(dirname "$0")/lib.sh"
 
 [ $# = 0 ] || fail "takes no argument"

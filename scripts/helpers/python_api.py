@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints the Python package's reference as a page of Markdown, from its sources: python_api.py
 
-What classes have from the extension is there where the package is installed, with the stub that its build has made.
+Members that classes inherit from the extension are listed if the package is installed, since its build makes the stub.
 """
 import ast
 import importlib.util

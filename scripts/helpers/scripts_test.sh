@@ -1,6 +1,6 @@
 #!/bin/sh
-# Calls every script with arguments that it cannot take: each must say so in one line and end with code 2, before it installs,
-# fetches or builds anything. Programs that would do that are replaced by one that notes its call.
+# Calls every script with wrong arguments: each must report them in one line and exit with 2, before it installs, downloads or
+# builds anything. Programs that would do so are replaced by one that records the call.
 . "$(dirname "$0")/lib.sh"
 
 [ $# = 0 ] || fail "takes no argument"
@@ -58,7 +58,7 @@ refused scripts/helpers/synthetic.sh
 refused scripts/helpers/versions.sh trixie/
 refused .ci/nightly no-such-step
 
-# None takes the python3 that stands first in the PATH (pyenv's, conda's), which may have nothing, nor runs a program of Python without
-# naming an interpreter.
+# No script runs the first python3 of the PATH (pyenv's, conda's), which may lack modules, or a Python program without naming an
+# interpreter.
 ! grep -nE '(^|[(&|] *|^ +|quietly )((/usr/bin/)?python3|"?[^ ]*\.py"?) ' scripts/*.sh scripts/helpers/*.sh .ci/run .ci/nightly || failed=1
 exit $failed

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Lays the branches for opencv_contrib into an empty repository: each must keep to its limit of size, the last one must be
-# modules/iib but for test/real, and the first one must have golden bits of modules/iib. Ends with code 77 outside of a clone.
+# Creates the opencv_contrib branches in an empty repository. Checks that each keeps its size limit, the last equals modules/iib
+# without test/real, and the first has the same golden bits. Exits with 77 outside of a clone.
 . "$(dirname "$0")/lib.sh"
 
 [ $# = 0 ] || fail "takes no argument"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds and tests the module in the tree of the OpenCV of other Debian releases, each in a root of its own in the cache:
-# scripts/helpers/versions.sh [suite...], by default trixie (OpenCV 4.10). Stand-alone newcomer.sh tests it there. Needs root.
+# Builds and tests the module in the OpenCV source of other Debian releases, each in its own root in the cache:
+# scripts/helpers/versions.sh [suite...], by default trixie (OpenCV 4.10). newcomer.sh tests the stand-alone build. Needs root.
 . "$(dirname "$0")/lib.sh"
 
 check_suites "$@"

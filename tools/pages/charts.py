@@ -17,7 +17,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib import ft2font, ticker  # noqa: E402
 
 GREY, RED, BLUE = '#64748b', '#b91c1c', '#1d4ed8'
-# Of each detector that `cost` draws: its colour, and where its name stands, in points from the line's end, so that it lies on no other line.
+# Per detector in `cost`: colour, and offset of its name from the line's end in points, so that it covers no other line.
 BESIDE = (8, 0), 'left'
 DRAWN = {'recommended chain': (RED, (-20, 30), 'center'), 'ALIKED-n16': (BLUE, *BESIDE), 'ORB': (GREY, (-8, 10), 'right'),
          'AKAZE': ('#a16207', (0, -36), 'center'), 'SIFT': ('#047857', (14, -20), 'left'), 'SIFT normalized': ('#7e22ce', (-8, 6), 'right')}

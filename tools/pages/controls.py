@@ -11,7 +11,7 @@ import summaries
 
 RESULTS = pathlib.Path(__file__).resolve().parents[2] / 'doc/results'
 CHAIN, OTHER = ('Hessian', 'IIB UNIVERSAL'), ('SIFT normalized', 'SIFT')
-# Kinds of places, by what was trained on walks through others of the kind and who renders them.
+# Kinds of places, grouped by renderer and by whether a preset was trained on walks through other places of the kind.
 GROUPS = {'trained on the kind': ('room', 'terrain'), 'same renderer': ('street', 'facade'), 'new kinds': ('yard', 'hall'), 'other renderer': ('court', 'store')}
 COUNTED = CHAIN, ('Hessian', 'SIFT'), ('SIFT normalized', 'IIB UNIVERSAL'), OTHER, ('SIFT', 'SIFT')  # methods of the table of neighbours
 WRONG = 10  # degrees

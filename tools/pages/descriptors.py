@@ -2,8 +2,8 @@
 
 """What the page shows of a descriptor besides its results."""
 
-# Descriptors of the main table in its order, those of them that were measured, by whose code they are: the name in the results of
-# fixed points, and whose points they are shown with where these are detected.
+# Descriptors of the main table, in its order, by licence of the code: name in the results of fixed points, and detector of the points
+# that they are shown with. Unmeasured ones are left out.
 ORB, HESSIAN, OWN = "ORB", "Hessian", ""
 SHOWN = {
     "Apache-2.0": {"IIB": ORB, "IIB ACCURATE": ORB, "IIB COMPACT": ORB, "IIB BALANCED": ORB, "IIB VIEWPOINT": ORB,
@@ -15,10 +15,10 @@ SHOWN = {
     "not free": {"SURF": OWN}}
 NOT_LEARNED = {"IIB", "BRISK", "AKAZE-486", "KAZE", "SIFT", "BRIEF-512", "DAISY", "SURF"}
 
-# What changes besides light, kinds of change first, as the page calls it.
+# Changes other than light, kinds of change first, and their names on the page.
 CHANGES = {"viewpoint": "other viewpoint", "zoom": "zoom and rotation", "blur": "blur", "jpeg": "compression"}
 
-# Those that the table of moved cameras and blur compares.
+# Descriptors in the table of moved cameras and blur.
 COMPARED = ("IIB", "IIB COMPACT", "IIB BALANCED", "IIB VIEWPOINT", "IIB UNIVERSAL", "ORB", "BRISK", "SIFT", "AKAZE-486",
             "BEBLID-512", "TEBLID-512", "LATCH-512")
 
@@ -38,10 +38,10 @@ METHODS = {("Hessian", "IIB UNIVERSAL"): "recommended chain", ("AKAZE", "IIB"): 
            ("ORB", "ORB"): "ORB", ("BRISK", "BRISK"): "BRISK", ("ORB", "BEBLID-512"): "BEBLID at ORB's points",
            ("SIFT", "SIFT"): "SIFT"}
 
-# The paper's nine detectors as far as they, or the next of their kind, can be had.
+# The paper's nine detectors, or the most similar ones that are available.
 SUITS = ("AKAZE", "ORB", "BRISK", "SIFT", "SURF", "KAZE", "superpoint", "alike-n", "aliked-n16", "xfeat")
 
-# Pairs of the slider by their second image: title, and what is to be said of it.
+# Pairs of the slider by their second image: title and comment.
 SCENES = {
     "view_overcast": ("street, sun and clouds", "The light is much the same, and soft: what the paper's first picture shows beside the next scene."),
     "night": ("street, noon and night", "The light comes from lamps and windows in place of the sun."),

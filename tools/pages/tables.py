@@ -187,7 +187,7 @@ def localization_lights(file):
 
 
 ONE, TWO, THREE = ('IIB x', 'IIB y', 'IIB i', 'IIB o'), ('IIB x+y', 'IIB o+i'), ('IIB x+y+i', 'IIB x+y+o')
-# The best of each group finds more than the best of the next one.
+# Statement: groups, each of whose best scores higher than the best of the next.
 ORDERS = {'x+y above every single channel': (('IIB x+y',), ONE), '4 channels above 3 above 2 above 1': (('IIB',), THREE, TWO, ONE),
           'QUARTILE above MEAN': (('IIB quartile',), ('IIB',)), 'overlap above none': (('IIB overlap',), ('IIB',)),
           'SORT below MEAN': (('IIB',), ('IIB sort',)),
