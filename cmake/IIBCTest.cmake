@@ -1,6 +1,6 @@
-# ctest entries: one for each suite of the modules' programs of tests, once with all instruction sets and once under each
-# pin WIDEST=DISABLED; a smoke run of the perf tests; the README on the installation; the demo. Those with the label
-# `nightly` are for scripts/test.sh --all.
+# ctest entries: each suite of the modules' test programs, with all instruction sets and under each pin WIDEST=DISABLED; a smoke
+# run of the performance tests; README's programs on an installation; the demo. scripts/test.sh --all also runs those with the
+# label `nightly`.
 if(CMAKE_CROSSCOMPILING)
   return()  # scripts/helpers/emulated.sh and scripts/windows.sh run the programs in an emulator
 endif()

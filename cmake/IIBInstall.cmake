@@ -1,4 +1,4 @@
-# Libraries, headers, CMake package opencv_iib and opencv_iib.pc. The headers go beside OpenCV's own.
+# Installs libraries, headers (beside OpenCV's own), the CMake package opencv_iib and opencv_iib.pc.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(include_dir "${CMAKE_INSTALL_INCLUDEDIR}/opencv4")

@@ -1,5 +1,5 @@
 # Target opencv_ts: OpenCV's test framework, which no distribution packages, from OpenCV's source.
-# It is built once for each version, compiler and set of flags, in the user's cache folder.
+# It is built once per version, compiler and flags, in the user's cache folder.
 if(NOT OPENCV_SOURCE_DIR)
   execute_process(COMMAND "${PROJECT_SOURCE_DIR}/scripts/helpers/opencv_source.sh"
     OUTPUT_VARIABLE source OUTPUT_STRIP_TRAILING_WHITESPACE RESULT_VARIABLE failed)

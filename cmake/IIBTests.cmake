@@ -1,4 +1,4 @@
-# The modules' programs of tests, and opencv_perf_iib, on OpenCV's own test framework.
+# The modules' test and performance programs, on OpenCV's own test framework.
 find_package(OpenCV 4.6 REQUIRED COMPONENTS core imgproc features2d flann calib3d imgcodecs videoio highgui
   OPTIONAL_COMPONENTS video)
 include(IIBOpenCVTs)

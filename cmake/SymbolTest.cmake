@@ -1,4 +1,5 @@
-# The dynamic symbols of LIBRARY, one of opencv_iib, opencv_iib_index and opencv_iib_geometry, are those of the API and of what iib_index builds on alone, its soname and what names the version in ROOT agree on it, and it is hardened.
+# Checks the dynamic symbols of LIBRARY, one of opencv_iib, opencv_iib_index and opencv_iib_geometry: only the API and the symbols that iib_index uses.
+# Its soname and every file in ROOT agree on the version, and it is hardened.
 # cmake -DLIBRARY=<file> -DNM=<nm> -DREADELF=<readelf> -DVERSION=<x.y.z> -DROOT=<repository> -P SymbolTest.cmake
 # Without VERSION, for a library of OpenCV's own build: checks only its symbols, and none of the standard library's
 # templates, which OpenCV's build exports as weak ones.

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds the library in build/ and installs it with its headers, its CMake package and its pkg-config file:
+# Builds the library in build/ and installs it with headers, CMake package and pkg-config file:
 #   scripts/install.sh [--prefix=FOLDER]
 # The folder is /usr/local or --prefix. Missing packages are installed through apt, and sudo is asked
 # for if the user may not write.

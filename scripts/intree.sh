@@ -77,7 +77,7 @@ contrib | contrib-5)
     ;;
 esac
 
-# One folder for all copies of the repository: another one's path rebuilds the module alone.
+# All checkouts share one folder: a change of checkout rebuilds only the module.
 exec 8>"$build.lock"
 flock 8
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Part of builds for the thread sanitizer: cv::parallel_for_ on plain threads. OpenCV's own pool (TBB, mostly) is not
-// instrumented, so that the sanitizer cannot see who waits for whom there; of these threads it sees all.
+// cv::parallel_for_ on plain threads, for the thread sanitizer. OpenCV's own pool (mostly TBB) is not instrumented, so its
+// waits would be invisible.
 
 #include "opencv2/core.hpp"
 #include "opencv2/core/parallel/parallel_backend.hpp"

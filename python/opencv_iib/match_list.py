@@ -182,8 +182,9 @@ def match_list(pairs: Path, images: Path, out: Path, camera: Optional[AnyCamera]
         check_folder(out, others=f', and a file in {" or ".join(HDF5)}')
     check_sizes(folder, sorted(used), masks, lens)
     labels = {pair: pair_name(names[pair[0]], names[pair[1]]) for pair in listed.values()}
-    if len(set(labels.values())) < len(labels):
-        raise InvalidOption(f'{os.fspath(pairs)}: two pairs would have one name, with - in place of /')
+    (label, count), = collections.Counter(labels.values()).most_common(1) or [('', 0)]
+    if count > 1:
+        raise InvalidOption(f'{os.fspath(pairs)}: {count} pairs would write {label}, since / becomes -: rename an image')
     settings = json.dumps([*(str(value) for name, value in vars(options).items() if name != 'mask'), str(lens), __version__])
     stamps = {name: masks.stamp(os.path.join(folder, name), name) for name in used}
     marks = {pair: [f'{stamps[names[pair[0]]]} {stamps[names[pair[1]]]}', settings] for pair in labels}

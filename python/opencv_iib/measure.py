@@ -242,7 +242,7 @@ class _Pair:
         return Measured(matches, bits, pose, found, view, *rotation_and_scale(self._upright(view)))
 
     def by_views(self, points: int) -> Measured:
-        """The result of simulated views, for any zoom, rotation and tilt; bits are -1, since matches have no keypoints."""
+        """The result of simulated views, of rotated, zoomed and tilted images; bits are -1, since matches have no keypoints."""
         found = match_stored(self.images, self._turns, self._masks, points)
         visible = self._visible(found.points1, found.points2)
         matches = RefinedMatches(*(each[visible] for each in found[2:6]))

@@ -1,4 +1,4 @@
-"""Matches images at any zoom, rotation and tilt."""
+"""Matches rotated, zoomed and tilted images."""
 from __future__ import annotations
 
 from typing import Any, NamedTuple, Optional, Sequence
@@ -29,7 +29,7 @@ class ViewMatches(NamedTuple):
 
 def matchViews(image1: ArrayLike, image2: ArrayLike, maxFeatures: int = 4000, maxTilt: float = 4,
                mask1: Optional[ArrayLike] = None, mask2: Optional[ArrayLike] = None) -> ViewMatches:
-    """Matches two images under changed illumination at any zoom, rotation and tilt, as ``cv2.iib.matchViews``.
+    """Matches two images under changed illumination: at any rotation, tilted, from a quarter to four times the size; as ``cv2.iib.matchViews``.
 
     Pairs that match as they are take no longer than detection, description, matching and :func:`propagateMatches`. For others views of both
     images are simulated: reduced by up to 4, rotated, tilted.

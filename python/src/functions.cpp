@@ -35,7 +35,7 @@ std::tuple<cv::Mat, cv::Mat, cv::Mat, cv::Mat> refineMatches(const cv::Mat& imag
     return {points1, points2, covariances, similarities};
 }
 
-// For images, or prepared ones.
+// Image: a matrix or a PreparedImage.
 template <typename Image>
 std::tuple<Matches, cv::Mat, cv::Mat, cv::Mat, cv::Mat> propagateMatches(const Image& image1,
         const KeyPoints& first, const Image& image2, const KeyPoints& second, Matches matches)

@@ -47,7 +47,8 @@ RUNS = {
                  ('python/examples/test_postgres.py',), ('python/examples/test_postgres.py',)],
     'colmap.md': [('import os; os.mkdir("images"); os.rename("day.png", "images/a.png"); os.rename("night.png", "images/b.png")',
                    'print(counts)', "'images': 2")],
-    'guide.md': [(NETWORKS, 'print(len(refined.points1), pose.found)', r'^\d{2,} ')],
+    'guide.md': [('image1, image2 = day, night; K1 = K2 = np.float64([[400, 0, 320], [0, 400, 240], [0, 0, 1]])', 'print(len(pose.inliers))', r'^\d{3,}\n'),
+                 (NETWORKS, 'print(len(refined.points1), pose.found)', r'^\d{2,} ')],
     'maps.md': [('python/tests/test_localization.py',)],
     'iib_day_night.markdown': [('day.png night.png', r'^\d{3} of \d{3,} matches agree')],
     'iib_relative_pose.markdown': [('day.png night.png 400 picture.png', r'^\d{2,} of \d{3,} matches agree')],
@@ -125,6 +126,10 @@ class Documentation(InFolder):
                 done = subprocess.run([sys.executable, 'program.py', *arguments.split()], capture_output=True, text=True, cwd=self.folder)
                 self.assertEqual(done.returncode, 1)
                 self.assertRegex(done.stderr, rf'^(\[ *WARN.*\n)?[^\n]*{message}[^\n]*\n$')
+
+    def test_the_readme_says_what_its_program_prints(self):
+        claim = re.search(r'# prints: (\d+)\d\d matches', PAGES[0].read_text())  # other versions of OpenCV may find a few others
+        self.run_program(programs(PAGES[0])[0], 'day.png night.png', rf'^{claim[1]}\d\d matches\n$')
 
     def test_every_program_is_known(self):
         self.assertGreater(len(PAGES), 15)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs the demo on its pair, and with each mistake a user can make (one line, exit code 2): demo_test.py DEMO OPENCV_VERSION"""
+"""Runs the demo on its pair, and with user mistakes (one line, exit code 2): demo_test.py DEMO OPENCV_VERSION"""
 import os
 import pathlib
 import re

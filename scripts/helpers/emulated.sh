@@ -3,8 +3,8 @@
 # qemu-user, including golden hashes.
 #   scripts/helpers/emulated.sh arm64|armhf [--gtest_...]      64 bits with NEON; 32 bits without
 #   scripts/helpers/emulated.sh arm64 --wheel                  the wheel for Debian's Python, and python/tests with it
-# The packages of the architecture come from the machine's own apt mirror and are unpacked in the cache; the system's
-# package database does not change. The options go to the test programs: scripts/helpers/emulated.sh arm64 --gtest_filter='IIB_Golden*'
+# The architecture's packages come from the machine's apt mirror and are unpacked in the cache; the system's package database
+# does not change. Options go to the test programs: scripts/helpers/emulated.sh arm64 --gtest_filter='IIB_Golden*'
 . "$(dirname "$0")/lib.sh"
 
 architecture="${1:-}"

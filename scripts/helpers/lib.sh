@@ -102,7 +102,7 @@ compiler_packages="g++ cmake make ninja-build"
 build_packages="$compiler_packages pkg-config libopencv-dev"
 pages_packages="python3-pandas python3-jinja2 python3-matplotlib"  # of tools/pages
 
-# The one build folder of demo, installation, tests and tools, so that the library is compiled once.
+# Demo, installation, tests and tools share one build folder, so that the library is compiled once.
 build="$root/build"
 
 # configure CMAKE_ARGUMENT...: prints only what a person should read. An existing folder keeps its generator and its targets.

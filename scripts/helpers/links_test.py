@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks that all links of a site of HTML pages have a target: links_test.py FOLDER
 
-Files and anchors below FOLDER are looked up; addresses of other sites are left alone.
+Checks files and anchors below FOLDER, not addresses of other sites.
 """
 import html.parser
 import pathlib

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Prints the examples of the Python package as a page of Markdown, cell by cell: python_examples.py [PICTURES]
 
-With PICTURES, by a Python that has the package, each cell is run as a notebook would, and followed by what it prints and by the
-pictures that it writes, which go to that folder.
+With PICTURES, each cell is run as in a notebook, by a Python that has the package. Its output and pictures follow it; the pictures
+go to that folder.
 """
 import ast
 import contextlib

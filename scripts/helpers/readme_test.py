@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Builds the programs of README.md, doc/install.md and the tutorials against an installation, by CMake and by pkg-config, and runs them:
+"""Builds the programs of README.md, doc/install.md and the tutorials against an installation, with CMake and pkg-config, and runs them:
 readme_test.py BUILD COMPILER FLAGS GENERATOR"""
 import os
 import pathlib

@@ -51,7 +51,7 @@ cv::Matx33d readCamera(const std::string& file)
                model == "PINHOLE" && camera(0, 0) > 0 && camera(1, 1) > 0;
     });
     if (count != 1)
-        CV_Error(cv::Error::StsParseError, file + ": not one PINHOLE camera");
+        CV_Error(cv::Error::StsParseError, file + ": needs exactly one PINHOLE camera");
     // COLMAP's pixels begin at whole numbers
     return camera - cv::Matx33d(0, 0, .5, 0, 0, .5, 0, 0, 0);
 }

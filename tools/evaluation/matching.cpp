@@ -56,7 +56,7 @@ void evaluatePair(const Options& options, const ImagePair& pair, ResultTable& ta
     const SeedPoints seeds =
             SeedSource(loaded.reference, options.points).seeds(iib, loaded.target.size(), loaded.homography);
     if (seeds.reference.empty())
-        CV_Error(cv::Error::StsError, "no points");
+        CV_Error(cv::Error::StsError, "no keypoints in " + pair.referenceFile);
     std::vector<cv::KeyPoint> ofReference = seeds.reference, ofTarget = seeds.target;
     const cv::Mat query = describe(iib, loaded.reference, {}, ofReference),
                   train = describe(iib, loaded.target, {}, ofTarget);

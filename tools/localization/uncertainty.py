@@ -3,9 +3,10 @@
 
 """Compares errors of Localizer with the reported covariances: uncertainty.py OUT.csv FOLDER...
 
-Dependencies: those of measure.py. Places in measure.py's layout are read below the folders. Places beside a folder `map` are localized in it.
-Others are localized in maps of their own other images: without each image alone, every other one and every third. OUT.csv receives two rows an
-image, as iib_evaluation's uncertainty: errors of the centre, in the poses' unit, and of the rotation, radians. Their count is 0 without a pose.
+Dependencies: those of measure.py. Reads places in measure.py's layout below the folders. Places beside a folder `map` are localized in it.
+Other places are localized in maps of their own images: without the image itself, without every other image and without every third. OUT.csv
+receives two rows per image, as iib_evaluation's uncertainty: errors of the centre, in the poses' unit, and of the rotation, radians; a count
+of 0 if there is no pose.
 """
 import csv
 import math

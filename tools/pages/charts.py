@@ -36,35 +36,38 @@ def svg(figure):
 
 
 def speed():
-    """Time over pixels, keypoints and codes."""
-    figure, axes = plt.subplots(1, 3, figsize=(WIDTH, 3.2), layout='constrained')
+    """Time over keypoints, pixels and codes."""
+    figure, axes = plt.subplots(2, 2, figsize=(WIDTH, 6), layout='constrained')
+    axes = axes.ravel()
 
     def draw(axis, test, form, sizes, labels):
         for name, label in labels.items():
             values = [timings.ms(test, *form(name, size))['AVX2'] for size in sizes]
             axis.plot(list(sizes.values()), values, marker='o', label=label)
 
-    draw(axes[0], 'IIB_Describe_large', lambda name, size: (name, size), {k: 24 * (k / 8) ** 2 for k in (1, 2, 3, 4, 6, 8)}, {'default': 'IIB', 'ORB': 'ORB'})
+    draw(axes[0], 'IIB_Chain_vga', lambda name, size: ('street_noon', name, size), {size: size for size in (1000, 2000)}, {'recommended chain': 'IIB', 'ORB': 'ORB'})
+    draw(axes[1], 'IIB_Describe_large', lambda name, size: (name, size), {k: 24 * (k / 8) ** 2 for k in (1, 2, 3, 4, 6, 8)}, {'default': 'IIB', 'ORB': 'ORB'})
     for test, labels in zip(timings.DESCRIBED, ({'default': 'IIB', 'PRESET_UNIVERSAL': 'IIB UNIVERSAL', 'ORB': 'ORB'}, {'BEBLID-512': 'BEBLID-512'})):
-        draw(axes[1], test, lambda name, size: (name, size), {size: size for size in (1000, 5000)}, labels)
-    draw(axes[2], 'IIB_Match_match', lambda name, size: (name, 'true', size), {size: size for size in (100, 500, 1000, 10000)},
+        draw(axes[2], test, lambda name, size: (name, size), {size: size for size in (1000, 5000)}, labels)
+    draw(axes[3], 'IIB_Match_match', lambda name, size: (name, 'true', size), {size: size for size in (100, 500, 1000, 10000)},
          {'EXACT': "IIB's matcher", 'BRUTE_FORCE': 'BFMatcher'})
-    axes[2].set(xscale='log', yscale='log')  # parallel lines have a constant ratio
-    for axis, title, label in zip(axes, ('Describe: larger images', 'Describe: more points', 'Match'), (
-            'megapixels (1000 keypoints)', 'keypoints (1280 x 720)', 'codes on either side, cross-check')):
+    axes[3].set(xscale='log', yscale='log')  # parallel lines have a constant ratio
+    for axis, title, label in zip(axes, ('Detect and describe', 'Description alone: larger images', 'Description alone: more points', 'Match'), (
+            'keypoints (640 x 480)', 'megapixels (1000 keypoints)', 'keypoints (1280 x 720)', 'codes on either side, cross-check')):
         axis.set(title=title, xlabel=label, ylabel='ms, AVX2')
         axis.legend()
-        if axis is not axes[2]:
+        if axis is not axes[3]:
             axis.set(xlim=(0, None), ylim=(0, None))
     return svg(figure)
 
 
 def poses():
     """Every method at its best ratio, in other light; below them, on the pairs of `cost`, the chain and ALIKED with LightGlue."""
-    bars = [('recommended chain' if method == controls.CHAIN else controls.name(method), controls.found()['other light', *method]) for method in controls.methods()]
+    bars = [('recommended chain' if method == controls.CHAIN else method[0] if len({*method}) == 1 else controls.name(method), controls.found()['other light', *method])
+            for method in controls.methods()]
     timed = {key[0]: ways['refined'] for key, ways in tables.poses_by_time().items() if key[1] == 1000}
     return scores(bars + [('%s, %s other pairs' % (name, timed[detector]['pairs']), timed[detector]) for name, detector in (
-        ('recommended chain', 'recommended chain'), ('ALIKED + LightGlue', 'ALIKED-n16'))], 'poses of rendered places')
+        ('recommended chain', 'recommended chain'), ('ALIKED + LightGlue', 'ALIKED-n16'))], 'pose score (AUC to 5 degrees; 1 is perfect), rendered places in other light, 1000 points', 2)
 
 
 def spread(rows, value='at_5'):
@@ -73,13 +76,14 @@ def spread(rows, value='at_5'):
     return values[0], [values[0] - values[1], values[2] - values[0]]
 
 
-def scores(bars, of='poses'):
-    """Scores from 0 to 1 of methods, with their confidence intervals."""
+def scores(bars, label='score of poses in other light, up to 5 degrees', apart=0):
+    """Scores from 0 to 1 of methods, with their confidence intervals; a gap before the last `apart` bars."""
     names, rows = zip(*bars)
     values, ends = spread(rows)
     figure, axis = plt.subplots(figsize=(WIDTH, .4 * len(names) + .6), layout='constrained')
-    axis.barh(names, values, xerr=ends, error_kw=ENDS, color=[RED if name.startswith('recommended chain') else GREY for name in names])
-    axis.set(xlim=(0, 1), xlabel='score of %s in other light, up to 5 degrees' % of)
+    places = [n + .6 * (apart > 0 and n >= len(names) - apart) for n in range(len(names))]
+    axis.barh(places, values, xerr=ends, error_kw=ENDS, color=[RED if name.startswith('recommended chain') else GREY for name in names])
+    axis.set(xlim=(0, 1), xlabel=label, yticks=places, yticklabels=names)
     axis.grid(False)
     axis.invert_yaxis()
     return svg(figure)
@@ -127,6 +131,7 @@ def uncertainty():
         axis.set(title=title, xlabel='level of confidenceLimit', xlim=(0, 1), ylim=(0, 1))
         axis.legend(frameon=False, fontsize='small')
     axes[0].set(ylabel='share of errors inside')
+    figure.suptitle('Below the dashed line: limits too narrow; above: too wide.', fontsize='medium')
     return svg(figure)
 
 

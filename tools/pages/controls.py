@@ -11,7 +11,7 @@ import summaries
 
 RESULTS = pathlib.Path(__file__).resolve().parents[2] / 'doc/results'
 CHAIN, OTHER = ('Hessian', 'IIB UNIVERSAL'), ('SIFT normalized', 'SIFT')
-# Kinds of places, by what was trained on walks through others of the kind and who renders them.
+# Kinds of places, grouped by renderer and by whether a preset was trained on walks through other places of the kind.
 GROUPS = {'trained on the kind': ('room', 'terrain'), 'same renderer': ('street', 'facade'), 'new kinds': ('yard', 'hall'), 'other renderer': ('court', 'store')}
 COUNTED = CHAIN, ('Hessian', 'SIFT'), ('SIFT normalized', 'IIB UNIVERSAL'), OTHER, ('SIFT', 'SIFT')  # methods of the table of neighbours
 WRONG = 10  # degrees
@@ -154,12 +154,17 @@ def less(row):
 
 
 def figures():
-    """Scores of the chain, of SMALL's bits, and of the better of SIFT and RootSIFT at the same points and at normalized SIFT's; pairs and places."""
+    """Scores of the chain, also under its default ratio and of SMALL's bits, and of the better of SIFT and RootSIFT at the same points and at two
+    kinds of SIFT's; whether those at the same points differ significantly; pairs and places."""
     def best(points):
         return max((row for key, row in found().items() if key[:2] == ('other light', points) and key[2] in ('SIFT', 'RootSIFT')), key=lambda row: float(row['at_5']))
     ours = found()['other light', *CHAIN]
     scores = {'chain': ours, 'small': found()['other light', 'Hessian', 'IIB SMALL'], 'same_points': best('Hessian'), 'sift_points': best('SIFT normalized')}
-    return {**{name: summaries.score(row) for name, row in scores.items()}, 'pairs': ours['pairs'], 'places': ours['places']}
+    short = {**scores, 'default_ratio': found('0.92')['other light', *CHAIN], 'sift': best('SIFT')}
+    differ = any(float(scores['same_points']['less_' + end]) * sign > 0 for end, sign in (('low', 1), ('high', -1)))
+    return {**{name: summaries.score(row) for name, row in scores.items()}, **{name + '_mean': '%.2f' % float(row['at_5']) for name, row in short.items()},
+            'best_sift': short['sift']['descriptor'], 'differ': 'the difference is %s' % ('significant' if differ else 'not significant'),
+            'pairs': ours['pairs'], 'places': ours['places']}
 
 
 def by_ratio():

@@ -25,10 +25,10 @@ def limits():
     same = {method: float(found['zoom', '1', method]['right']) for method in ('upright chain', 'matchViews', 'SIFT', 'ORB')}
 
     def last(method, kind, step):
-        kept = [float(key[1]) for key, row in found.items() if key[::2] == (kind, method) and float(row['right']) >= same[method] / 2]
-        return '%g' % step(kept) if kept else 'none'
-    lines = [[method, last(method, 'zoom', min), last(method, 'zoom', max), last(method, 'rotation', lambda kept: max(k for k in kept if k <= 60)), last(method, 'tilt', max)]
-             for method in same]
+        amounts = {float(key[1]): float(row['right']) >= same[method] / 2 for key, row in found.items() if key[::2] == (kind, method)}
+        kept = [amount for amount, half in amounts.items() if half]
+        return 'none' if not kept else 'any (%g)' % max(kept) if kind == 'rotation' and all(amounts.values()) else '%g' % step(kept)
+    lines = [[method, last(method, 'zoom', min), last(method, 'zoom', max), last(method, 'rotation', max), last(method, 'tilt', max)] for method in same]
     return summaries.table(['half of the right matches are left at', 'reduced to', 'enlarged by', 'rotation, degrees', 'tilt'], lines)
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """The least time of each test in several runs of opencv_perf_iib and opencv_perf_iib_geometry: speed.py OUT.csv COMMIT MACHINE XML...
 
-OUT.csv gets milliseconds, one column per instruction set, which OpenCV names in the XML. MACHINE comes into its first line, with COMMIT
-into runs.csv if OUT.csv is that of doc/results.
+OUT.csv gets milliseconds, one column per instruction set, which OpenCV names in the XML. Its first line has MACHINE. If OUT.csv is that of
+doc/results, runs.csv gets COMMIT and MACHINE.
 """
 import pathlib
 import re

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Summarizes an evaluation for tables and pages: summaries.py PAIRS OUT [COMMIT MACHINE]
 
-PAIRS: the folder of iib_evaluation's results, with a row for each pair of images. OUT gets means over the pairs of a group, one
-row each, with their number and the ends of the 95 % confidence interval of what is named last (low, high; bootstrap over scenes).
-With COMMIT (or several, of all rows) and MACHINE, runs.csv says of which run each file is whose summary changed.
+PAIRS: folder of iib_evaluation's results, with a row for each pair of images. OUT gets one row per group: means over its pairs, their
+number, and the 95 % confidence interval of the last mean (low, high; bootstrap over scenes).
+With COMMIT (or several, of all rows) and MACHINE, runs.csv records the run of each file whose summary changed.
 """
 import collections
 import csv
@@ -18,7 +18,7 @@ TRAINED_ON = {'tilde_webcam', 'amos_daynight', 'walk_room', 'walk_terrain'}  # b
 RENDERED = {'lights'}
 TRAINED_ON_RENDERED = {'IIB UNIVERSAL', 'IIB SMALL'}  # on walks through these scenes
 UNSEEN_SCENES = {'street', 'facade'}  # rendered scenes without them
-# Pairs in other light that rules for matches and poses were chosen on: sets, and seeds of places (tools/synthetic/views.py).
+# Pairs in other light on which rules for matches and poses were chosen: sets, and seeds of places (tools/synthetic/views.py).
 CHOSEN_ON = {'walk_facade', 'strecha relit'}
 CHOSEN_SEEDS = {'1', '21', '22', '23', '31', '32'}
 # Scenes that the constants of matchViews were chosen on, and one of the same place.
@@ -128,7 +128,7 @@ def columns(*names):
     return {name: column(name) for name in names}
 
 
-# File: groups that a row counts in, further columns that make a group, what is averaged.
+# File: the groups of a row, further columns that make a group, averaged columns.
 PLANS = {
     'fixed_points.csv': (places, ('configuration', 'bytes'), columns('precision', 'recall')),
     'detected_points.csv': (places, ('detector', 'descriptor', 'bytes'), columns('precision', 'recall', 'correct')),

@@ -187,7 +187,7 @@ def localization_lights(file):
 
 
 ONE, TWO, THREE = ('IIB x', 'IIB y', 'IIB i', 'IIB o'), ('IIB x+y', 'IIB o+i'), ('IIB x+y+i', 'IIB x+y+o')
-# The best of each group finds more than the best of the next one.
+# Statement: groups, each of whose best scores higher than the best of the next.
 ORDERS = {'x+y above every single channel': (('IIB x+y',), ONE), '4 channels above 3 above 2 above 1': (('IIB',), THREE, TWO, ONE),
           'QUARTILE above MEAN': (('IIB quartile',), ('IIB',)), 'overlap above none': (('IIB overlap',), ('IIB',)),
           'SORT below MEAN': (('IIB',), ('IIB sort',)),
@@ -265,7 +265,7 @@ def drop_in():
     that nothing was trained on."""
     found = summaries.by(rows('detected_points.csv'), 'place', 'detector', 'descriptor')
     lines = []
-    for place, detector, ours in (*(('natural', name, 'IIB') for name in ('ORB', 'AKAZE', 'BRISK', 'KAZE', 'SIFT')), ('light', 'ORB', 'IIB SMALL')):
+    for place, detector, ours in (*(('natural', name, 'IIB') for name in ('ORB', 'AKAZE', 'SIFT')), ('light', 'ORB', 'IIB SMALL')):
         before, now = (float(found[place, detector, name]['correct']) for name in (detector, ours))
         lines.append([detector if ours == 'IIB' else 'ORB, 32 bytes each', '%.0f' % before, '%.0f' % now, '%.1f' % (now / before)])
     return table(['points of', 'its own descriptor', '**IIB**', 'times'], lines)
@@ -273,6 +273,11 @@ def drop_in():
 
 SIZES = {32: ('IIB SMALL', 'IIB TINY', 'ORB', 'BEBLID-256', 'TEBLID-256', 'BRIEF-256', 'LATCH-256'),
          64: ('IIB COMPACT', 'IIB BALANCED', 'BEBLID-512', 'TEBLID-512', 'LATCH-512', 'BRIEF-512')}
+
+
+def byte_figures():
+    """Bytes of descriptors."""
+    return {row['descriptor'].lower(): row['bytes'] for row in rows('detected_points.csv') if row['descriptor'].isalpha()}
 
 
 def equal_sizes():
@@ -291,7 +296,7 @@ def rotation_figures():
     """Recall of upright and oriented codes of rotated images."""
     turned = summaries.by(rows('robustness.csv'), 'configuration', 'target', kind='turn')
     return {'%s_%s' % (name, angle): '%.2f' % float(turned[configuration, angle]['recall']) for name, configuration, angle in (
-        ('upright', 'IIB', '15'), ('orb', 'ORB oriented', '15'))}
+        ('upright', 'IIB', '15'), ('universal', 'IIB UNIVERSAL', '15'), ('orb', 'ORB oriented', '15'))}
 
 
 def pose_figures():
@@ -389,9 +394,19 @@ def inside(level, quantity):
     return '%.0f to %.0f' % (min(shares), max(shares))
 
 
+SURE = {'pose': ('relative poses', 'findRelativePose'), 'localizer': ('`Localizer`', 'Localizer'), 'align': ('corners by `alignImages`', 'alignImages'),
+        'points': ('points by `refineMatches`', 'refineMatches'), 'propagated': ('points by `propagateMatches`', 'propagated')}
+
+
 def sure_figures():
+    """Per cent of errors within the limits of 95 %."""
+    return {name + '_95': inside('0.95', quantity) for name, (_, quantity) in SURE.items()}
+
+
+def sure():
     """Per cent of errors within the limits of three levels."""
-    return {'%s_%s' % (name, level[2:]): inside(level, what) for name, what in (('pose', 'findRelativePose'), ('localizer', 'Localizer')) for level in ('0.5', '0.95', '0.99')}
+    return table(['per cent of the errors of', *('inside %g %%' % (100 * float(level)) for level in ('0.5', '0.95', '0.99'))],
+                 [[label, *(inside(level, quantity) for level in ('0.5', '0.95', '0.99'))] for label, quantity in SURE.values()])
 
 
 def uncertainty():
@@ -399,7 +414,7 @@ def uncertainty():
     def cells(row):
         inside = ('%.0f' % (100 * float(row[level])) if row[level] else '–' for level in ('0.5', '0.95', '0.99'))
         return [*inside, *('%.2g' % float(row[name]) if row.get(name) else '–' for name in ('deviation', 'score'))]
-    return table(['', 'data', 'pairs', 'found', 'errors', 'inside 50 %', '95 %', '99 %', 'deviation', 'score'],
+    return table(['', 'data', 'pairs', 'found', 'errors', 'inside 50 %', '95 %', '99 %', 'deviation', 'log score'],
                  [[*(row[name] for name in ('quantity', 'data', 'pairs', 'found', 'errors')), *cells(row)] for row in rows('uncertainty.csv')])
 
 
@@ -438,11 +453,11 @@ QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, own_descriptors, equal_sizes, presets, ratios, photographs, describing, chains, same_points, matching, step_by_step,
     matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time,
-    detected_points, uncertainty, night, first_patch)}
+    detected_points, sure, uncertainty, night, first_patch)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
 ALL.update({'photographs_of_many': functools.partial(photographs, False), 'views_affine': functools.partial(by_change, 'some photographs', ('matchViews', 'AffineFeature')),
             'views': functools.partial(by_change, 'photographs', ('matchViews', 'upright chain', 'ORB', 'SIFT')), 'pose_all': controls.table, 'pose_kinds': controls.kinds, 'pose_ratios': controls.by_ratio, 'pose_noise': controls.noise,
             'pose_neighbours': controls.neighbours, 'pose_cause': controls.cause, 'wrong_poses': controls.wrong, **questions.ALL})
 FIGURES = {'learned': learned_figures, 'controls': controls.figures, 'poses': pose_figures, 'photographs': photograph_figures, 'views': view_figures, 'sure': sure_figures,
-           'speed': speed_figures, 'rotation': rotation_figures, 'questions': questions.figures, 'runs': run_figures}
+           'speed': speed_figures, 'rotation': rotation_figures, 'bytes': byte_figures, 'questions': questions.figures, 'runs': run_figures}

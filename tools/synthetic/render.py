@@ -89,7 +89,7 @@ def write_camera(path, scene, poses, size):
     write_text(path, storage.releaseAndGetString())
 
 
-# A file to render, and where to copy it: depth and labels are the same for all lights at a pose.
+# A file to render, and its copies: all lights at a pose share depth and labels.
 Task = namedtuple("Task", "target scene mode light pose frame copies seed", defaults=[0])
 
 

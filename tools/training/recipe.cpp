@@ -116,9 +116,9 @@ std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std:
         names.insert(walk.scene + ", where points are detected");
     for (const std::string& name : names)
         out << "//   " << name << "\n";
-    out << "// For each level, row, column and channel a digit to base 32, the bit mask; w, x, y, z for 2, "
-           "4, 8, 16 of "
-           "zero.\n\n";
+    out << "// One base-32 digit, the bit mask, per level, row, column and channel; w, x, y, z are runs of "
+           "2, 4, "
+           "8, 16 zeros.\n\n";
 
     std::ostringstream table;
     for (const NamedExtractor& preset : presets)

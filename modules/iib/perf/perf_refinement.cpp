@@ -87,7 +87,6 @@ PERF_TEST_P(IIB_Refine, vga_300_matches, Step::all())
     SANITY_CHECK_NOTHING();
 }
 
-// Propagation of matches.
 typedef perf::TestBaseWithParam<int> IIB_Propagate;  // points
 
 PERF_TEST_P(IIB_Propagate, moved_and_by_night, testing::Values(1000, 2000, 4000))

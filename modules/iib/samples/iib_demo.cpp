@@ -24,7 +24,8 @@ static const char* const KEYS =
         "{out        | iib_demo.png | the picture}";
 static const int MAX_KEYPOINTS = 1000, MAX_ERROR = 3, MIN_CONSISTENT = 10;  // fewer agree by chance
 static const double WIDTH = 1100;                                           // of the picture
-static const char* const SETTINGS = " (1000 keypoints an image, upright, mutual, ratio test)";
+static const char* const SETTINGS =
+        " (1000 keypoints per image, upright, mutual, ratio %s); green: right, red: wrong";
 
 //! Mutual nearest neighbours under a ratio: the recommended .92 for bits, Lowe's .8 for SIFT's numbers.
 static std::vector<DMatch> match(const Mat& a, const Mat& b)
@@ -76,15 +77,17 @@ try
             CV_Error(Error::StsBadArg, "two images are needed; cannot read '" + parser.get<String>(i) + "'");
     const String known = parser.get<String>("homography"), depths = parser.get<String>("depth");  // the truth
     const Mat depth = depths.empty() ? Mat() : imread(depths, IMREAD_UNCHANGED);
-    if (!depths.empty() && (depth.type() != CV_16U || depth.size() != images[0].size() || known.empty()))
-        CV_Error(
-                Error::StsBadArg, depths + " is no depth of A in 16 bits, or there is no homography with it");
+    if (!depths.empty() && known.empty())
+        CV_Error(Error::StsBadArg, "--depth needs --homography");
+    if (!depths.empty() && (depth.type() != CV_16U || depth.size() != images[0].size()))
+        CV_Error(Error::StsBadArg, depths + " is not an image of 16 bits and of A's size");
     std::ifstream file(known.c_str());
     Mat_<double> truth(known.empty() ? 0 : 3, depth.empty() ? 3 : 4);
     for (double& value : truth)
         file >> value;
     if (!known.empty() && (!file || determinant(truth.colRange(0, 3)) == 0))
-        CV_Error(Error::StsBadArg, "the file " + known + " has not all numbers of a homography");
+        CV_Error(Error::StsBadArg,
+                known + " does not hold an invertible 3 x 3 homography (3 x 4 with --depth)");
     const String out = parser.get<String>("out"), word = truth.empty() ? "consistent" : "correct";
     const String names[] = {"IIB", "SIFT", "ORB"};
     const Ptr<Feature2D> features[] = {iib::IIBDescriptorExtractor::createRecommended(MAX_KEYPOINTS),
@@ -119,8 +122,8 @@ try
                 Scalar(), good, lines | DrawMatchesFlags::DRAW_OVER_OUTIMG);
         resize(rows[k], rows[k], Size(WIDTH, cvRound(rows[k].rows * WIDTH / rows[k].cols)), 0, 0, INTER_AREA);
         copyMakeBorder(rows[k], rows[k], 40, 0, 0, 0, BORDER_CONSTANT, Scalar(32, 28, 26));
-        putText(rows[k], score + SETTINGS, Point(14, 27), FONT_HERSHEY_DUPLEX, .6, Scalar::all(235), 1,
-                LINE_AA);
+        putText(rows[k], score + format(SETTINGS, k == 1 ? ".8" : ".92"), Point(14, 27), FONT_HERSHEY_DUPLEX,
+                .6, Scalar::all(235), 1, LINE_AA);
     }
     vconcat(rows, 2, picture);  // of IIB and SIFT, for one screen
     if (!imwrite(out, picture))

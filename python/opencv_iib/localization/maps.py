@@ -110,7 +110,7 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
         except _core.error:
             if unreported:
                 why = min(unreported, key=in_order)[:-len(LEFT_OUT)]
-                raise InvalidOption(f"{os.fspath(images)} has none of the model's {left_out} images that can be read, such as {why}") from None
+                raise InvalidOption(f"cannot use any of the model's {left_out} images in {os.fspath(images)}; the first: {why}") from None
             raise
         finally:
             stop.set()

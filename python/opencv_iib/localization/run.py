@@ -138,7 +138,7 @@ def images_of(folder: Path, out: Path = '', log: Callable[[str], None] = note) -
 def check_name(name: str) -> None:
     """:raises ValueError: for a name that the results cannot hold."""
     if not is_utf8(name) or name.startswith('#') or len(name.splitlines()) > 1:
-        raise ValueError('rename it, in UTF-8, without a leading # and line breaks: a trajectory cannot hold these')
+        raise ValueError('the trajectory cannot hold this name: rename it in UTF-8, without a leading # or a line break')
 
 
 def labels_of(names: Sequence[str]) -> dict[str, str]:

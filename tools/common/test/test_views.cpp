@@ -103,7 +103,7 @@ TEST_F(ViewsTest, broken_files_are_reported)
     folder.write("s/walk/cameras.txt", "1 OPENCV 30 20 25 26 15 10 0 0 0 0\n");
     EXPECT_NE(std::string::npos, message().find("cameras.txt, line 1"));
     folder.write("s/walk/cameras.txt", "");
-    EXPECT_NE(std::string::npos, message().find("not one PINHOLE camera"));
+    EXPECT_NE(std::string::npos, message().find("needs exactly one PINHOLE camera"));
 }
 
 }  // namespace

@@ -134,7 +134,7 @@ TEST(IIB_Descriptor, more_light_changes_few_bits)
     const Ptr<IIB> iib = IIB::create();
     const Mat a = describe(*iib, image, keypoints), b = describe(*iib, lit, keypoints);
     EXPECT_LT(differingBits(a, b), 0.1 * 8 * (double)a.total());
-    // where all values have room, none
+    // no bit differs if no value saturates
     const Ptr<IIB> gradients =
             IIB::create(2.f, 4, IIB::CHANNEL_GRAD_X | IIB::CHANNEL_GRAD_Y | IIB::CHANNEL_INTENSITY);
     Mat dark = image / 4, bright = dark * 3 + Scalar(50);

@@ -265,7 +265,7 @@ FileLock::FileLock(const String& name, What what)
     const String& path = waits ? name : name + ".lock";
     const Present there = presentAt(name);
     if (what == OUTPUT_FOLDER && (!there.any || there.file))
-        CV_Error(Error::StsError, "Cannot write " + name + ": it is no folder");
+        CV_Error(Error::StsError, "Cannot write " + name + ": it is not a folder");
     while ((file = CreateFileW(systemName(path).c_str(), GENERIC_WRITE, 0, 0,
                     waits ? OPEN_ALWAYS : CREATE_NEW,
                     waits ? FILE_ATTRIBUTE_NORMAL : FILE_FLAG_DELETE_ON_CLOSE, 0)) == INVALID_HANDLE_VALUE)

@@ -50,7 +50,7 @@ bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image)
     const bool unknown = findsAngles(plan.parameters);
     if (!unknown && !region.isRotated())
         return region.isInside(image);
-    // for an unknown angle, the one that reaches farthest
+    // an unknown angle counts as 45 degrees, where the square reaches farthest
     const Rotation rotation(unknown ? 45 : region.angle);
     const double half = std::min(region.side, LARGEST_ROTATED_SIDE) / 2;
     const double reach = half * (std::abs(rotation.cosine) + std::abs(rotation.sine));

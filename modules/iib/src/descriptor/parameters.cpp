@@ -45,7 +45,7 @@ static void checkSelection(const Parameters& p)
         if (bits <= 0 || (bits & ~mask) != 0)
             refuse(format("bit mask %d must have some of the bits of %d and no others", bits, mask));
         if (!seen.insert(std::array<int, 4>{{level, channel, row, col}}).second)
-            CV_Error(Error::StsBadArg, format("selection, row %d: the quad was given before", i));
+            CV_Error(Error::StsBadArg, format("selection, row %d repeats a quad", i));
         last = level;
     }
 }

@@ -16,7 +16,7 @@
 //   tilde_webcam/chamonix
 //   tilde_webcam/courbevoie
 //   tilde_webcam/panorama
-// For each level, row, column and channel a digit to base 32, the bit mask; w, x, y, z for 2, 4, 8, 16 of zero.
+// One base-32 digit, the bit mask, per level, row, column and channel; w, x, y, z are runs of 2, 4, 8, 16 zeros.
 
 static const char S128_MASKS[] =
         "w055xdayw52x3c0441w0822w028xc24zx0284w0402w08x08c2zxwc8w03x0d03x38zx0314w0402w043x388y8x08zzzzyx"

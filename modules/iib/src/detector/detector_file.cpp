@@ -55,7 +55,7 @@ Ptr<Feature2D> readDetector(const FileNode& node, const Ptr<Feature2D>& present)
 {
     const String name = node.isMap() && node["class"].isString() ? (String)node["class"] : String();
     if (name.empty())
-        CV_Error(Error::StsParseError, "the file's detector has no class; read a node of write()");
+        CV_Error(Error::StsParseError, "the file's detector has no class: pass a node that write() made");
     const FileNode parameters = node["parameters"];
     if (name == "Feature2D.ORB")
         return readOrb(parameters);

@@ -103,7 +103,7 @@ void PackedCodes::grow(int blocks)
     filled = blocks;
 }
 
-// Mat::resize is not safe: if it runs out of memory, the matrix is larger than its memory.
+// If Mat::resize runs out of memory, the matrix claims more rows than its buffer holds.
 void PackedCodes::allocate(int blocks)
 {
     Mat larger(blocks, (int)format.blockWords(), CV_32S);

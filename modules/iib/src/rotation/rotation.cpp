@@ -172,7 +172,8 @@ double estimateRotation(const std::vector<KeyPoint>& keypoints1, const std::vect
     }
     const double angle = votes.peak();
     if (angle < 0)
-        CV_Error(Error::StsBadArg, format("%d matches; a rotation needs two whose positions differ", (int)n));
+        CV_Error(Error::StsBadArg,
+                format("matchRotated: %d matches; at least two with different positions are needed", (int)n));
     return angle;
 }
 

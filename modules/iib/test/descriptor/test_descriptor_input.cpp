@@ -168,7 +168,7 @@ TEST(IIB_Input, the_largest_float_is_finite)
                          describe(*iib, image, keypoints, std::vector<Mat>(1, ranked))));
 }
 
-// An image may be as large as its descriptors, of their type.
+// The output matrix may be the input image, if size and type fit.
 TEST(IIB_Input, descriptors_may_go_where_the_image_is)
 {
     const Ptr<IIB> iib = IIB::create(1.f, 4, 15, IIB::MAPPING_MEAN, false, false, 1);

@@ -16,8 +16,7 @@
 
 namespace opencv_test { namespace {
 
-// The edge cases of DescriptorMatcher in which BFMatcher fails or surprises, and its core's own tests in their
-// Hamming form.
+// Edge cases where BFMatcher fails or behaves unexpectedly, and OpenCV's own matcher tests with NORM_HAMMING.
 
 const int BYTES = 42;
 const std::vector<int> LEVELS = {2, 8, 32};

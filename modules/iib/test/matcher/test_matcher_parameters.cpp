@@ -221,7 +221,7 @@ TEST(IIB_MatcherCreate, recommended)
     expectKnnAsOracle(*loaded, oracle, queries, 1);
 }
 
-// Algorithm's convention and DescriptorMatcher's, each read by the other's call.
+// Files of Algorithm::save and of DescriptorMatcher::write, each read by both calls.
 TEST(IIB_MatcherCreate, save_write_load_and_read_in_all_directions)
 {
     const Ptr<HierarchicalMatcher> unusual =

@@ -29,11 +29,12 @@ The descriptors are CV_8U and compared with NORM_HAMMING. The same input gives t
 every instruction set, thread count and build. One object may serve several threads as long as none
 changes its parameters or calls cv::setNumThreads.
 
-**Files.** Algorithm::save and Feature2D::write store the parameters and the detector. Unlike write(filename), save checks for
-errors, and keeps the old file if the disk is full. Algorithm::load and Feature2D::read take either kind of file. On Windows,
-save takes names in UTF-8 too, but load only those in the code page (loadFromString reads the content of any file). ORB,
-HessianDetector and NormalizedDetector are restored with their parameters. A detector of any other class must be set by
-setDetector before read, which throws for another class and calls the detector's own read().
+**Files** store the parameters and the detector.
+- Algorithm::save checks for errors and keeps the old file if the disk is full; Feature2D::write(filename) does neither.
+- Algorithm::load and Feature2D::read take both kinds of file.
+- On Windows save takes names in UTF-8 too, but load only those in the code page; loadFromString reads the content of any file.
+- ORB, HessianDetector and NormalizedDetector are restored with their parameters.
+- Other detector classes: call setDetector before read, which calls the detector's own read(). Another class in the file throws.
  */
 class CV_EXPORTS_W IIBDescriptorExtractor : public Feature2D
 {

@@ -95,7 +95,7 @@ public:
 
     /** @brief The train descriptors of each image, unpacked from the codes: CV_8U, rows x descriptor size.
 
-    It hides DescriptorMatcher::getTrainDescriptors, which gives empty matrices: memory holds the packed codes alone.
+    It hides DescriptorMatcher::getTrainDescriptors, which gives empty matrices, since only packed codes are kept.
      */
     CV_WRAP virtual std::vector<Mat> getTrainDescriptors() const = 0;
 
@@ -178,7 +178,7 @@ public:
      */
     CV_WRAP static Ptr<HierarchicalMatcher> loadIndex(const String& filename);
 
-    //! @brief DescriptorMatcher::clone with this class as its type. @param emptyTrainData copy the parameters alone.
+    //! @brief DescriptorMatcher::clone with this class as its type. @param emptyTrainData true: copies only the parameters.
     CV_WRAP_AS(clone) Ptr<HierarchicalMatcher> copy(bool emptyTrainData = false) const;
 };
 

@@ -28,8 +28,9 @@ matches. findRelativePose and alignImages need a logarithm below -3, one in a th
 CV_EXPORTS_W double logFalseAlarms(
         InputArray points1, InputArray points2, InputArray inliers, bool epipolar, double threshold);
 
-/** @brief Limit of the squared Mahalanobis distance error^T covariance^-1 error that errors stay below with a given probability, under the
-covariances of findRelativePose, alignImages, refineMatches and Localizer.
+/** @brief Limit of the squared Mahalanobis distance, error^T covariance^-1 error.
+
+Errors stay below it with the given probability. For covariances of findRelativePose, alignImages, refineMatches and Localizer.
 
 The errors have longer tails than Gaussian ones, since some estimates are worse than their matches show. They follow Student's t with two degrees of
 freedom whose scale matrix is a quarter of the covariance. Compare a distance with this limit, not with a quantile of chi-squared. doc/uncertainty.md

@@ -9,7 +9,7 @@ namespace cv { namespace iib {
 //! @addtogroup iib_geometry
 //! @{
 
-/** @brief Matches two images under changed illumination at any zoom, rotation and tilt.
+/** @brief Matches two images under changed illumination: at any rotation, tilted, from a quarter to four times the size.
 
 First the images themselves are matched: the recommended chain, then propagateMatches. Decisive matches are returned.
 Otherwise views of both images are simulated (@cite MorelYu2009) and compared by a few hundred points each:

@@ -53,7 +53,7 @@ public:
     int words() const { return ends.back(); }
     size_t blockWords() const { return (size_t)words() * CODES_PER_BLOCK; }
 
-    //! From a descriptor to the plain words of its code, and back.
+    //! arrange: descriptor to plain words. restore: the reverse.
     void arrange(const uchar* descriptor, unsigned* plain) const;
     void restore(const unsigned* plain, uchar* descriptor) const;
 
