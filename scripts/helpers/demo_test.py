@@ -18,8 +18,8 @@ FILES = {'text.png': 'not an image', 'flat.pgm': 'P2 64 64 1\n' + 64 * 64 * '0 '
 MISTAKES = [[], [DAY], ['missing.png', NIGHT], ['text.png', NIGHT], ['flat.pgm', 'flat.pgm']] + [
     [DAY, NIGHT, option] for option in (
         '--homography=missing.txt', '--homography=short.txt', '--homography=singular.txt', '--depth=' + DAY, '--out=no-such-folder/picture.png',
-        '--out=picture.unknown')]
-# With the ground truth, matches are correct; with an estimated homography, consistent. The chain has the most of both.
+        '--out=picture.unknown')] + [[DAY, NIGHT, '--homography=true.txt', '--depth=' + DAY]]
+# By the true homography matches are "correct", by an estimated one "consistent". IIB has the most in each.
 LINE = r'\nIIB ([1-9]\d+) of \d+ {0}, SIFT (\d+) of \d+ {0}, ORB (\d+) of \d+ {0}\n'
 EXPECTED = [([DAY, NIGHT], r'consistent: within 3 pixels of a MAGSAC homography' + LINE.format('consistent')),
             ([DAY, NIGHT, '--homography=true.txt'], r'correct: within 3 pixels of the truth' + LINE.format('correct')),
@@ -32,7 +32,7 @@ def run(*arguments):
 
 
 def shown(arguments):
-    """Runs the demo on two images, and checks that it ends with a summary. :return: its output."""
+    """What the demo prints of two images, with the last lines a person reads."""
     done = run(*arguments, '--out=picture.png')
     if done.returncode or not re.search(r'\n[^\n]*IIB[^\n]*\npicture: picture.png\n$', done.stdout) or not (folder / 'picture.png').exists():
         wrong.append(f'{arguments}: no summary or no picture: {done}')
