@@ -25,7 +25,7 @@ static const char* const KEYS =
 static const int MAX_KEYPOINTS = 1000, MAX_ERROR = 3, MIN_CONSISTENT = 10;  // fewer agree by chance
 static const double WIDTH = 1100;                                           // of the picture
 static const char* const SETTINGS =
-        " (1000 keypoints per image, upright, mutual, ratio %s); green: %s, red: not";
+        " (1000 points per image, upright, mutual, ratio %s); green: %s, red: not";
 
 //! Mutual nearest neighbours under a ratio: the recommended .92 for bits, Lowe's .8 for SIFT's numbers.
 static std::vector<DMatch> match(const Mat& a, const Mat& b)
