@@ -25,7 +25,7 @@ static const char* const KEYS =
 static const int MAX_KEYPOINTS = 1000, MAX_ERROR = 3, MIN_CONSISTENT = 10;  // fewer agree by chance
 static const double WIDTH = 1100;                                           // of the picture
 static const char* const SETTINGS =
-        " (1000 keypoints per image, upright, mutual, ratio %s); green: right, red: wrong";
+        " (1000 points per image, upright, mutual, ratio %s); green: %s, red: not";
 
 //! Mutual nearest neighbours under a ratio: the recommended .92 for bits, Lowe's .8 for SIFT's numbers.
 static std::vector<DMatch> match(const Mat& a, const Mat& b)
@@ -122,8 +122,8 @@ try
                 Scalar(), good, lines | DrawMatchesFlags::DRAW_OVER_OUTIMG);
         resize(rows[k], rows[k], Size(WIDTH, cvRound(rows[k].rows * WIDTH / rows[k].cols)), 0, 0, INTER_AREA);
         copyMakeBorder(rows[k], rows[k], 40, 0, 0, 0, BORDER_CONSTANT, Scalar(32, 28, 26));
-        putText(rows[k], score + format(SETTINGS, k == 1 ? ".8" : ".92"), Point(14, 27), FONT_HERSHEY_DUPLEX,
-                .6, Scalar::all(235), 1, LINE_AA);
+        putText(rows[k], score + format(SETTINGS, k == 1 ? ".8" : ".92", word.c_str()), Point(14, 27),
+                FONT_HERSHEY_DUPLEX, .6, Scalar::all(235), 1, LINE_AA);
     }
     vconcat(rows, 2, picture);  // of IIB and SIFT, for one screen
     if (!imwrite(out, picture))
