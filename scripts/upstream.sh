@@ -64,8 +64,7 @@ limit_of() {
 branch_of() {
     case "${1#modules/iib/}" in
     test/real/*) ;;
-    */kernels/mappings.hpp | */orientation.hpp | */features.hpp | test/test_main.cpp | perf/perf_main.cpp) echo descriptor ;;
-    */textures.* | */oracle_pixels.hpp) echo descriptor ;;
+    */kernels/mappings.hpp | */orientation.hpp | */features.hpp | test/test_main.cpp | perf/perf_main.cpp | */textures.*) echo descriptor ;;
     CMakeLists.txt | cmake/* | src/precomp.hpp | test/test_precomp.hpp | */detail/code_layout.hpp | */detail/packed_codes.hpp) echo matcher ;;
     */index_file.* | */checked_file.* | */detail/files.hpp | src/common/files.cpp | */temporary_file.hpp | */test_index_file.cpp) echo files ;;
     */matcher/kernels/*.simd.hpp | src/common/vectors.simd.hpp | */test_hamming.cpp) echo hamming ;;
@@ -74,7 +73,7 @@ branch_of() {
     */aligned_buffer.hpp | */test_matcher_chunks.cpp) echo hamming ;;
     */iib/hessian_detector.hpp | */detector/kernels/* | src/detector/hessian* | */blobs.* | */scale_space.*) echo detector ;;
     src/normalization/* | src/common/image_input.* | src/common/grey.*) echo detector ;;
-    */hessian_oracle.* | */test_hessian_detector.cpp | */normalization_oracle.* | */test_images.*) echo detector ;;
+    */hessian_oracle.* | */test_hessian_detector.cpp | */oracle_pixels.hpp | */normalization_oracle.* | */test_images.*) echo detector ;;
     *normalized_detector.* | */detector_file.* | */test_local_normalization.cpp | */seen_image.hpp) echo normalized ;;
     */iib/refinement.hpp | */prepared_image.hpp | src/refinement/* | src/common/geometry.hpp | doc/iib.bib) echo refinement ;;
     */refinement_scene.* | */test_refinement_bits.cpp | */test_propagation.cpp) echo refinement ;;
