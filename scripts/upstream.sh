@@ -1,20 +1,5 @@
 #!/bin/sh
-# Lays modules/iib into a checkout of opencv_contrib as branches, each a pull request on top of the one before:
-#   iib-descriptor  the descriptor alone, upright, for 8-bit images, in universal intrinsics; as upstream/descriptor has it
-#   iib-matcher     HierarchicalMatcher, with scans in plain C++
-#   iib-hamming     the same scans in universal intrinsics, about 20 times as fast
-#   iib-files       index files, and parameters that are saved whole
-#   iib-detector    HessianDetector, on an image that is normalized locally
-#   iib-normalized  NormalizedDetector, for any other detector
-#   iib-refinement  refineMatches, propagateMatches
-#   iib-kernels     loops over pixels and cells, for each instruction set, not used yet
-#   iib-steps       from images and keypoints to bits by these kernels, not used yet
-#   iib-presets     the descriptor as it is here: all mappings, presets, boxes, orientation, files
-#   iib-bits        its bits beside naive oracles
-#   iib-rotation    matchRotated, and tests of all that rotates
-#   iib-checks      further tests of the descriptor: wrong arguments, files, threads
-#   iib-matching    further tests of the matcher: wrong arguments, files, threads
-#   iib-whole       further tests, speed, samples, tutorials; without test/real, whose images opencv_extra has not
+# Lays modules/iib into a checkout of opencv_contrib as branches, each a pull request on top of the one before, as listed below.
 # The detector comes before the presets, since createRecommended() has both. Before iib-presets, files of upstream/BRANCH replace
 # those of modules/iib. upstream/FROM.BEFORE.patch changes the files of modules/iib in the branches from FROM on, before BEFORE.
 # A pull request's text is its commit's message.
@@ -23,9 +8,28 @@
 #   scripts/upstream.sh [--test | --sizes] FOLDER
 # --test: builds each branch in the tree of the newest OpenCV 4, the first and the last one in OpenCV 5's too, and runs its tests.
 # --sizes: only lays the branches and checks their sizes.
+# Each branch, and the subject of its commit.
+subjects="\
+descriptor Added iib module: illumination-insensitive binary descriptor
+matcher iib: exact and coarse-to-fine matching of binary descriptors
+hamming iib: scans of the matcher in universal intrinsics
+files iib: index files of the matcher
+detector iib: keypoints that change little with the light
+normalized iib: any detector on an image that is normalized locally
+refinement iib: matches to a fraction of a pixel, with covariances
+kernels iib: kernels of the descriptor for each instruction set, not used yet
+steps iib: batches of keypoints, channels and sums for the descriptor, not used yet
+presets iib: learned selections, boxes, orientation and other depths for the descriptor
+bits iib: tests of the descriptor's bits beside naive oracles
+rotation iib: matches of images that are rotated by one angle
+checks iib: tests of the descriptor's input, parameters, files and threads
+matching iib: tests of the matcher's parameters, index files and threads
+whole iib: tests of the refinement, performance, tutorials"
+subject() { echo "$subjects" | sed -n "s/^$1 //p"; }
+more_help() { echo "$subjects" | sed "s/^/  iib-/"; }
 . "$(dirname "$0")/helpers/lib.sh"
 
-test="" sizes=""
+test="" sizes="" branches=$(echo "$subjects" | cut -d " " -f 1 | paste -sd " ")
 case "${1:-}" in
 --test)
     test=yes
@@ -36,7 +40,6 @@ case "${1:-}" in
     shift
     ;;
 esac
-branches="descriptor matcher hamming files detector normalized refinement kernels steps presets bits rotation checks matching whole"
 [ $# = 1 ] || fail "takes the folder of a checkout of opencv_contrib"
 folder=$1
 [ -d "$folder/modules" ] || fail "$folder is no checkout of opencv_contrib: it has no modules/"
@@ -96,26 +99,6 @@ git -C "$root" ls-files modules/iib | while read -r file; do
     branch=$(branch_of "$file")
     [ -z "$branch" ] || echo "${file#modules/iib/}" >>"$work/$branch"
 done
-
-subject() {
-    case "$1" in
-    descriptor) echo "Added iib module: illumination-insensitive binary descriptor" ;;
-    matcher) echo "iib: exact and coarse-to-fine matching of binary descriptors" ;;
-    hamming) echo "iib: scans of the matcher in universal intrinsics" ;;
-    files) echo "iib: index files of the matcher" ;;
-    detector) echo "iib: keypoints that change little with the light" ;;
-    normalized) echo "iib: any detector on an image that is normalized locally" ;;
-    refinement) echo "iib: matches to a fraction of a pixel, with covariances" ;;
-    kernels) echo "iib: kernels of the descriptor for each instruction set" ;;
-    steps) echo "iib: batches of keypoints, channels and sums for the descriptor" ;;
-    presets) echo "iib: learned selections, boxes, orientation and other depths for the descriptor" ;;
-    bits) echo "iib: tests of the descriptor's bits beside naive oracles" ;;
-    rotation) echo "iib: matches of images that are rotated by one angle" ;;
-    checks) echo "iib: tests of the descriptor's input, parameters, files and threads" ;;
-    matching) echo "iib: tests of the matcher's parameters, index files and threads" ;;
-    whole) echo "iib: tests of the refinement, performance, tutorials" ;;
-    esac
-}
 
 # number_of BRANCH: its place among the branches.
 number_of() { echo "$branches " | grep -o "^.*\b$1 " | wc -w; }
