@@ -9,21 +9,6 @@ import pathlib
 import re
 import sys
 
-# What a folder below src may include, besides precomp.hpp; the rest of the module includes what it likes.
-ALLOWED = {'': {''}, 'common': {'common'}, 'rotation': {'rotation', 'common'}}
-ALLOWED['verdict'] = {'verdict', 'common'}  # of iib_geometry
-ALLOWED['pose'] = {'pose', *ALLOWED['verdict']}
-ALLOWED['views'] = {'views', *ALLOWED['pose']}
-ALLOWED['alignment'] = {'alignment', *ALLOWED['views']}
-ALLOWED['map'] = {'map', *ALLOWED['pose']}
-ALLOWED['locate'] = {'locate', *ALLOWED['map'], *ALLOWED['views']}
-for wing in ('descriptor', 'matcher', 'detector', 'normalization', 'refinement'):
-    ALLOWED[wing + '/kernels'] = {wing + '/kernels', 'common'}
-    ALLOWED[wing] = {wing, wing + '/kernels', 'common'}
-for wing in ('detector', 'refinement'):
-    ALLOWED[wing].add('normalization')
-ALLOWED['detector'].add('normalization/kernels')  # halves the normalized image, too
-ALLOWED['descriptor'].add('detector')  # an extractor writes and reads the file of its detector
 #: What tests of other modules may include of iib, and how many files each module has at least.
 SHARED = ('iib/test/support/*.hpp', 'iib/perf/matcher.hpp')
 FILES = {'iib': 80, 'iib_index': 10, 'iib_geometry': 50}
@@ -40,11 +25,18 @@ def resolved(module, file, path):
     return beside if beside.exists() else module / 'src' / path
 
 
+def circle_of(included):
+    """Units that include each other in a circle, or include some that do."""
+    while free := {unit for unit, others in included.items() if not others & included.keys()}:
+        included = {unit: others for unit, others in included.items() if unit not in free}
+    return included.keys()
+
+
 def mistakes(module):
     files = sorted(module.rglob('*.[ch]pp'))
     if len(files) < FILES[module.name]:
         yield 'only %d files below %s' % (len(files), module)
-    units = {}  # of src, and which they include
+    units, layers = {}, {}  # files and folders of src, and which they include
     for file in files:
         text, name = file.read_text(), file.relative_to(module)
         included = []
@@ -57,22 +49,15 @@ def mistakes(module):
         if name.parts[0] != 'src':
             continue
         layer = folder(name)
-        allowed = ALLOWED.get(layer, set())
-        for path in included:
-            if folder(path) not in allowed and path.name != 'precomp.hpp':
-                yield '%s includes %s: %s may include only %s' % (name, path, layer, ', '.join(sorted(allowed)))
+        layers.setdefault(layer, set()).update({folder(path) for path in included if path.name != 'precomp.hpp'} - {layer})
         unit = name.with_suffix('')
         units.setdefault(unit, set()).update({path.with_suffix('') for path in included} - {unit})
         if INTRINSICS.search(text) and name.name != 'vectors.simd.hpp':
             yield '%s has raw intrinsics; give them a name in a vectors.simd.hpp' % name
-    # Units that include no other one still there are taken away, until none is left: what remains are circles.
-    while True:
-        free = {unit for unit, included in units.items() if not included & units.keys()}
-        if not free:
-            break
-        units = {unit: included for unit, included in units.items() if unit not in free}
-    if units:
-        yield 'these files include each other in a circle, or include some that do: ' + ', '.join(map(str, sorted(units)))
+    for what, of in (('files', units), ('folders', layers)):
+        circle = circle_of(of)
+        if circle:
+            yield 'these %s include each other in a circle, or include some that do: %s' % (what, ', '.join(map(str, sorted(circle))))
 
 
 def picture(modules):
