@@ -9,10 +9,10 @@ from typing import Iterable, Optional
 
 import numpy as np
 
+from opencv_iib import _core
 from opencv_iib.geometry import logFalseAlarms
 
 MIN_INLIERS = 15  # COLMAP's
-CERTAIN = -3  # logFalseAlarms above it are not significant
 
 
 def magsac(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5) -> tuple[np.ndarray, Optional[np.ndarray]]:
@@ -31,7 +31,7 @@ def magsac(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5) -
     if matrix is None or matrix.shape != (3, 3) or mask is None:
         return none, None
     inliers = mask.ravel() > 0
-    certain = inliers.sum() >= MIN_INLIERS and logFalseAlarms(points_a, points_b, inliers, True, threshold) < CERTAIN
+    certain = inliers.sum() >= MIN_INLIERS and logFalseAlarms(points_a, points_b, inliers, True, threshold) < _core.CERTAIN
     return (inliers, matrix) if certain else (none, None)
 
 
@@ -47,7 +47,7 @@ def show_the_same(points_a: np.ndarray, points_b: np.ndarray, threshold: float =
                                      cv2.USAC_MAGSAC, threshold, maxIters=10000, confidence=.9999)
     except cv2.error:  # degenerate points, for some versions
         return False
-    return mask is not None and logFalseAlarms(points_a, points_b, mask, False, threshold) < CERTAIN
+    return mask is not None and logFalseAlarms(points_a, points_b, mask, False, threshold) < _core.CERTAIN
 
 
 def colmap_binary() -> Optional[str]:

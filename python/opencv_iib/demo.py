@@ -8,7 +8,7 @@ import numpy as np
 from opencv_iib._arguments import Path
 from opencv_iib._drawing import GOOD, INK, OTHER, Caption, draw
 from opencv_iib._images import import_cv2, write_picture
-from opencv_iib.features import FeatureOptions, make_detector
+from opencv_iib.features import FeatureOptions, detect, make_detector
 from opencv_iib.functions import match
 from opencv_iib.keypoints import keypoints_to_array
 from opencv_iib.measure import View, read_pair
@@ -85,12 +85,12 @@ def _own_descriptor(name: str, views: Sequence[View], points: int, upright: bool
         return None
     rows, codes = [], []
     for view in views:
-        found = detector.detect(view.image, view.mask)
+        found = detect(detector, view.image, view.mask)
         if len(found) > points:  # else keep the order, which decides between equal distances
             found = sorted(found, key=lambda keypoint: -keypoint.response)[:points]
         for keypoint in found if upright else ():
             keypoint.angle = 0
-        found, described = detector.compute(view.image, found)
+        found, described = detector.compute(view.image, found) if found else ((), None)  # SIFT describes no point of small images
         rows.append(view.turn.keypoints(keypoints_to_array(found)))
         codes.append(np.zeros((0, detector.descriptorSize()), np.uint8) if described is None else described)
     if not all(map(len, codes)):

@@ -4,12 +4,12 @@ from __future__ import annotations
 import dataclasses
 import os
 import threading
-from typing import Any, Optional
+from typing import Any, Optional, Sequence
 
 import numpy as np
 
 from opencv_iib._arguments import InvalidOption, Path, check_choice, check_count, integer
-from opencv_iib._images import reduced, resized_mask
+from opencv_iib._images import import_cv2, reduced, resized_mask
 from opencv_iib._upright import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector
@@ -69,6 +69,16 @@ def make_detector(name: str, points: int) -> Any:
     return create(points) if name in ('ORB', 'SIFT') else create()
 
 
+def detect(detector: Any, image: np.ndarray, mask: Optional[np.ndarray]) -> Sequence[Any]:
+    """Keypoints; none where cv2 raises since the image is too small for its detector."""
+    try:
+        return list(detector.detect(image, mask))
+    except import_cv2().error:
+        if min(image.shape[:2]) >= MIN_SIZE:
+            raise
+        return []
+
+
 def check_max_size(max_size: int) -> None:
     """:raises InvalidOption: below MIN_SIZE, except for 0."""
     if integer(max_size, 'max_size', 64) and not MIN_SIZE <= max_size:
@@ -99,7 +109,7 @@ class Features:
             self._local.detector = make_detector(self.options.detector, self.options.points)
         small = reduced(image, self.options.max_size)
         allowed = mask if mask is None else resized_mask(upright(mask, orientation), small)
-        found = sorted(self._local.detector.detect(small, allowed), key=lambda keypoint: -keypoint.response)[:self.options.points]
+        found = sorted(detect(self._local.detector, small, allowed), key=lambda keypoint: -keypoint.response)[:self.options.points]
         rows, codes = self.extractor.compute(small, keypoints_to_array(found))
         if small is not image:
             scale = np.array(image.shape[1::-1]) / small.shape[1::-1]

@@ -12,8 +12,6 @@ from opencv_iib._arrays import as_image, as_mask
 from opencv_iib._upright import Turn
 from opencv_iib.refinement import float_rows
 
-MOST_ROTATION, MOST_SCALE = 8, 1.2  # degrees and factor up to which images match as they are
-
 
 class ViewMatches(NamedTuple):
     """The result of :func:`matchViews`, a row a match; pixels, the centre of the first pixel is 0."""
@@ -66,9 +64,9 @@ def similarity(points1: np.ndarray, points2: np.ndarray) -> np.ndarray:
 def rotation_and_scale(view: np.ndarray) -> tuple[float, float]:
     """The rotation in degrees and the scale of an affine map; 0 and 1 if both are small."""
     turn = (view[0, 0] + view[1, 1] + 1j * (view[1, 0] - view[0, 1])) / 2
-    rotation, scale = np.degrees(np.angle(turn)), float(np.sqrt(abs(np.linalg.det(view[:2, :2]))))
-    small = abs(np.log(scale)) < np.log(MOST_SCALE) and abs(rotation) < MOST_ROTATION
-    return (0, 1) if small else (float(rotation % 360), scale)
+    rotation, scale = np.angle(turn), float(np.sqrt(abs(np.linalg.det(view[:2, :2]))))
+    small = abs(np.log(scale)) < np.log(_core.MOST_SCALE) and abs(rotation) < _core.MOST_TURN
+    return (0, 1) if small else (float(np.degrees(rotation) % 360), scale)
 
 
 class ViewMatcher:

@@ -3,6 +3,8 @@
 #include "bindings.hpp"
 #include "held.hpp"
 
+#include "../../modules/iib_geometry/src/verdict/verdict.hpp"
+#include "../../modules/iib_geometry/src/views/view.hpp"
 #include "opencv2/iib.hpp"
 #include "opencv2/iib/detail/prepared_image.hpp"
 #include "opencv2/iib_geometry.hpp"
@@ -115,6 +117,9 @@ void bindFunctions(nb::module_& m)
             },
             WithoutGil());
     m.def("confidenceLimit", &cv::iib::confidenceLimit);
+    m.attr("CERTAIN") = double(cv::iib::Verdict::CERTAIN);
+    m.attr("MOST_TURN") = cv::iib::MOST_TURN;
+    m.attr("MOST_SCALE") = cv::iib::MOST_SCALE;
     nb::class_<Aligner>(m, "ImageAligner")  // which holds a view of the reference
             .def_static(
                     "create",

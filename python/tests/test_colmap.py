@@ -252,6 +252,9 @@ class Runs(Collection):
         with self.ended_in(_core.WholeFile, 'commit'):  # the file is complete, but not renamed yet
             self.build(force=True)
         self.assertEqual(self.build(force=True), counts)
+        with self.ended_in(_core.WholeFile, 'commit'):
+            self.build(force=True)
+        self.assertLess(self.build(force=True, points=200)['keypoints'], counts['keypoints'], 'other options than the unfinished run')
         self.assertEqual(self.files(), ['database.db', 'images'])
 
     def test_images_changed_or_removed_after_an_interruption(self):

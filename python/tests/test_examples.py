@@ -90,7 +90,3 @@ class Examples(unittest.TestCase):
         self.assertGreater(right, .4 * len(distances))
         self.assertGreater(same, .95 * right)
         self.assertLessEqual(same, right)
-
-
-if __name__ == '__main__':
-    unittest.main()

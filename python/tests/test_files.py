@@ -135,7 +135,3 @@ class Files(InFolder):
         (self.folder / 'link').symlink_to('a')
         with self.assertRaisesRegex(FileExistsError, 'is a link'), only_writer(str(self.folder / 'link')):
             pass
-
-
-if __name__ == '__main__':
-    unittest.main()

@@ -99,8 +99,10 @@ rows, pairs = np.column_stack([10 * points + 4.5, 10 * sizes]), np.arange(len(po
 measure(lambda: opencv_iib.detect_and_describe(first, 4000))
 measure(lambda: opencv_iib.propagateMatches(first, rows, second, rows, pairs))
 measure(lambda: opencv_iib.alignImages(first, second))
+matcher, codes = opencv_iib.HierarchicalMatcher(), np.ones((400000, 128), np.uint8)  # 4.3 bytes a pixel
+measure(lambda: matcher.add(codes))
 """
         done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True)
-        self.assertEqual(len(done.stdout.split()), 3, done.stderr)
+        self.assertEqual(len(done.stdout.split()), 4, done.stderr)
         for bytes_of_a_pixel in map(float, done.stdout.split()):
             self.assertLess(bytes_of_a_pixel, 6)

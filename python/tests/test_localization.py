@@ -277,7 +277,3 @@ class Localization(OnWall):
             self.assertEqual(run_command(command, *arguments, '--out', out)[0], first[0])
             self.assertEqual(([Path(name).read_text() for name in beside], set(os.listdir(out)) - {'matches', 'views'}),
                              (['precious'] * 4, set(made) - {'matches', 'views'}))
-
-
-if __name__ == '__main__':
-    unittest.main()

@@ -64,7 +64,3 @@ class Measured(unittest.TestCase):
             np.testing.assert_allclose(r['errors'], rows[0]['errors'], atol=1e-4, err_msg='the command finds the same')
         self.assertEqual(len(results['seasons']), 1)
         self.assertIn('"text":"0.png, night: ', world)
-
-
-if __name__ == '__main__':
-    unittest.main()

@@ -255,7 +255,3 @@ class Stream(Options):
     def test_a_full_disk_ends_it(self):
         with mock.patch('builtins.print', side_effect=OSError(28, 'No space left on device')):
             self.assertEqual(self.stream('none.png')[0], 1)
-
-
-if __name__ == '__main__':
-    unittest.main()

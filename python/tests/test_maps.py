@@ -302,7 +302,3 @@ class Maps(OnWall):
                 error = found @ np.linalg.inv(true)
                 self.assertLess(np.linalg.norm(np.linalg.inv(found)[:3, 3] - np.linalg.inv(true)[:3, 3]), .05, name)
                 self.assertGreater((np.trace(error[:3, :3]) - 1) / 2, np.cos(np.radians(.25)), name)
-
-
-if __name__ == '__main__':
-    unittest.main()

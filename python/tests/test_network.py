@@ -140,7 +140,3 @@ class NetworkTest(InFolder):
                 cutting('add_pair', 'two', 10):
             self.assertEqual(rows(self.client), expected)
         self.expect_left('three')
-
-
-if __name__ == '__main__':
-    unittest.main()

@@ -154,8 +154,11 @@ class Lists(Collection):
         with h5py.File(self.folder / 'mine.h5', 'w') as file:
             file['precious'] = 1
         self.match(self.folder / 'mine.h5', status=1)
-        (self.folder / 'text.h5').write_text('precious')
-        self.match(self.folder / 'text.h5', status=1)
+        (self.folder / 'other').mkdir()
+        for name, out in (('text.h5', 'text.h5'), ('y.h5.partial', 'y.h5'), ('other/pairs.csv.partial', 'other')):
+            (self.folder / name).write_text('precious')
+            self.match(self.folder / out, status=1)
+            self.assertEqual((self.folder / name).read_text(), 'precious')
 
     @unittest.skipIf(h5py is None or fcntl is None, 'no h5py, or no such locks on this system')
     def test_a_file_that_another_process_has_open(self):

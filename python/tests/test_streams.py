@@ -241,7 +241,3 @@ class Mistakes(InFolder):
                     self.assertRegex(errors, rf'^{command.split()[0]}: [^\n]*(?:{message})[^\n]*\n$')
                     self.assertEqual((status, out), (2, ''))
                     self.assertEqual(set(self.folder.rglob('*')), files)
-
-
-if __name__ == '__main__':
-    unittest.main()

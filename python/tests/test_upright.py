@@ -200,7 +200,3 @@ class Commands(Collection):
         self.assertEqual([line.split(' (')[0] for line in self.lines], [f'{orientation}.png: its EXIF data say that it is stored mirrored' for orientation in MIRRORED])
         size = dict(self.query('SELECT name, width FROM images NATURAL JOIN cameras'))
         self.assertEqual(size, {'a.png': 400, 'b.png': 300, 'more/c.png': 400})
-
-
-if __name__ == '__main__':
-    unittest.main()

@@ -40,7 +40,3 @@ class Views(unittest.TestCase):
         for mistaken in (dict(maxTilt=.5), dict(maxFeatures=-1), dict(mask1=np.ones((3, 3), np.uint8))):
             with self.assertRaises(opencv_iib.error, msg=mistaken):
                 opencv_iib.matchViews(image, image, **mistaken)
-
-
-if __name__ == '__main__':
-    unittest.main()

@@ -1,31 +1,15 @@
 #!/usr/bin/env python3
-"""Checks the includes of modules, and their picture in CONTRIBUTING.md: includes_test.py [--draw] FOLDER...; --draw writes the picture.
+"""The picture of includes of modules, which CONTRIBUTING.md has: includes_test.py [--draw] FOLDER...; with --draw it is written anew.
 
-- Arrows between folders point downwards only.
-- No file includes itself through others; a header and the source of the same name count as one file.
-- A module includes no file of another one, except headers in opencv2/iib/detail and what tests share.
-- Raw intrinsics are only in the two files vectors.simd.hpp.
+It reads the sources, since it is about them. Arrows between folders point downwards only, no file includes itself by way of
+others, where a header and the source of the same name count as one, nothing leaves the module but for what tests share (what modules share is in opencv2/iib/detail), and raw
+intrinsics stand in one file.
 """
 import pathlib
 import re
 import sys
 
-# What a folder below src may include, besides precomp.hpp; other files of the module may include anything.
-ALLOWED = {'': {''}, 'common': {'common'}, 'rotation': {'rotation', 'common'}}
-ALLOWED['verdict'] = {'verdict', 'common'}  # of iib_geometry
-ALLOWED['pose'] = {'pose', *ALLOWED['verdict']}
-ALLOWED['views'] = {'views', *ALLOWED['pose']}
-ALLOWED['alignment'] = {'alignment', *ALLOWED['views']}
-ALLOWED['map'] = {'map', *ALLOWED['pose']}
-ALLOWED['locate'] = {'locate', *ALLOWED['map'], *ALLOWED['views']}
-for wing in ('descriptor', 'matcher', 'detector', 'normalization', 'refinement'):
-    ALLOWED[wing + '/kernels'] = {wing + '/kernels', 'common'}
-    ALLOWED[wing] = {wing, wing + '/kernels', 'common'}
-for wing in ('detector', 'refinement'):
-    ALLOWED[wing].add('normalization')
-ALLOWED['detector'].add('normalization/kernels')  # also halves the normalized image
-ALLOWED['descriptor'].add('detector')  # an extractor writes and reads the file of its detector
-#: Files of iib that tests of other modules may include, and the least number of files in each module.
+#: What tests of other modules may include of iib, and how many files each module has at least.
 SHARED = ('iib/test/support/*.hpp', 'iib/perf/matcher.hpp')
 FILES = {'iib': 80, 'iib_index': 10, 'iib_geometry': 50}
 INTRINSICS = re.compile(r'(?:^|[^a-zA-Z_])(?:_mm[0-9]*_|__m(?:128|256|512)|v[a-z]+q_[a-z]*[0-9])', re.MULTILINE)
@@ -36,20 +20,27 @@ def folder(path):
 
 
 def resolved(module, file, path):
-    """The files that a file includes: from its own folder, or from src, as the compiler searches."""
+    """What a file includes by a path: from its own folder, or from src, as the compiler looks for it."""
     beside = (file.parent / path).resolve()
     return beside if beside.exists() else module / 'src' / path
+
+
+def circle_of(included):
+    """Units that include each other in a circle, or include some that do."""
+    while free := {unit for unit, others in included.items() if not others & included.keys()}:
+        included = {unit: others for unit, others in included.items() if unit not in free}
+    return included.keys()
 
 
 def mistakes(module):
     files = sorted(module.rglob('*.[ch]pp'))
     if len(files) < FILES[module.name]:
         yield 'only %d files below %s' % (len(files), module)
-    units = {}  # files of src, and the files that each includes
+    units, layers = {}, {}  # files and folders of src, and which they include
     for file in files:
         text, name = file.read_text(), file.relative_to(module)
         included = []
-        for path in re.findall(r'^#include "([^"]*)(?<!_declarations.hpp)"', text, re.MULTILINE):  # made by CMake
+        for path in re.findall(r'^#include "([^"]*)(?<!_declarations.hpp)"', text, re.MULTILINE):  # those CMake makes
             target = resolved(module, file, path)
             if module not in target.parents and not any(target.match(shared) for shared in SHARED):
                 yield '%s includes %s, which is not of the module' % (name, path)
@@ -58,22 +49,15 @@ def mistakes(module):
         if name.parts[0] != 'src':
             continue
         layer = folder(name)
-        allowed = ALLOWED.get(layer, set())
-        for path in included:
-            if folder(path) not in allowed and path.name != 'precomp.hpp':
-                yield '%s includes %s: %s may include only %s' % (name, path, layer, ', '.join(sorted(allowed)))
+        layers.setdefault(layer, set()).update({folder(path) for path in included if path.name != 'precomp.hpp'} - {layer})
         unit = name.with_suffix('')
         units.setdefault(unit, set()).update({path.with_suffix('') for path in included} - {unit})
         if INTRINSICS.search(text) and name.name != 'vectors.simd.hpp':
             yield '%s has raw intrinsics; give them a name in a vectors.simd.hpp' % name
-    # Remove units without includes until none is left; circles remain.
-    while True:
-        free = {unit for unit, included in units.items() if not included & units.keys()}
-        if not free:
-            break
-        units = {unit: included for unit, included in units.items() if unit not in free}
-    if units:
-        yield 'these files include each other in a circle, or include some that do: ' + ', '.join(map(str, sorted(units)))
+    for what, of in (('files', units), ('folders', layers)):
+        circle = circle_of(of)
+        if circle:
+            yield 'these %s include each other in a circle, or include some that do: %s' % (what, ', '.join(map(str, sorted(circle))))
 
 
 def picture(modules):

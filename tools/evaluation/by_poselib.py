@@ -14,8 +14,10 @@ import numpy as np
 THRESHOLDS = .5, 1  # pixels
 
 
-def angle(cosine):
-    return math.degrees(math.acos(max(-1, min(1, cosine))))
+def error_of(R, t, true_R, true_t):
+    """The larger angle in degrees of rotation and direction."""
+    cosines = (np.trace(R.T @ true_R) - 1) / 2, t.ravel() @ true_t / np.linalg.norm(t) / np.linalg.norm(true_t)
+    return max(math.degrees(math.acos(max(-1, min(1, cosine)))) for cosine in cosines)
 
 
 def camera(matrix):
@@ -29,8 +31,7 @@ def estimate(poselib, numbers, threshold):
         return 'inf', 0
     pose, info = poselib.estimate_relative_pose(points[:, :2].copy(), points[:, 2:].copy(), camera(cameras[:9]), camera(cameras[9:]),
                                                 {'max_epipolar_error': threshold}, {})
-    turn = angle((np.trace(pose.R.T @ R) - 1) / 2)
-    return '%.6g' % max(turn, angle(pose.t @ t / np.linalg.norm(pose.t) / np.linalg.norm(t))), info['num_inliers']
+    return '%.6g' % error_of(pose.R, pose.t, R, t), info['num_inliers']
 
 
 def main():

@@ -32,7 +32,7 @@ import numpy as np
 import poselib
 
 import opencv_iib
-from by_poselib import THRESHOLDS, angle, estimate
+from by_poselib import THRESHOLDS, error_of, estimate
 
 COLUMNS = ['set', 'sequence', 'target', 'detector', 'points', 'matches', 'estimator', 'error', 'milliseconds']
 OWN = 'propagateMatches, findRelativePose'
@@ -125,10 +125,6 @@ class Learned:
         return [np.column_stack([each, np.full(len(each), 7)]) for each in points], pairs.numpy()
 
 
-def error_of(pose, R, t):
-    return max(angle((np.trace(pose.R.T @ R) - 1) / 2), angle(float(pose.t.ravel() @ t / np.linalg.norm(t)))) if pose.found else float('inf')
-
-
 def image_file(roots, *names):
     for root in roots:
         for file in root.joinpath(*names[:-1]).glob(names[-1] + '.*'):
@@ -193,7 +189,7 @@ def main():
             pose = opencv_iib.findRelativePose(found.points1, found.points2, K1, K2)
             ended = time.process_time()
             plain = np.concatenate([numbers, np.column_stack([rows[0][pairs[:, 0], :2], rows[1][pairs[:, 1], :2]]).ravel()])
-            lines = [[*key, OWN, '%.6g' % error_of(pose, R, t), '%.1f' % (1000 * (ended - start))]]
+            lines = [[*key, OWN, '%.6g' % (error_of(pose.R, pose.t, R, t) if pose.found else float('inf')), '%.1f' % (1000 * (ended - start))]]
             for threshold in THRESHOLDS:
                 begun = time.process_time()
                 error, _ = estimate(poselib, plain, threshold)

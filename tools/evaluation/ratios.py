@@ -20,6 +20,7 @@ import cv2
 import numpy as np
 
 import opencv_iib
+from by_poselib import error_of
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / 'localization'))
 from measure import read_place  # noqa: E402
@@ -48,14 +49,6 @@ def places(root):
                 yield 'other light, moved', mapped.parent, mapped / 'images' / best, light / 'images' / name, (camera, relative[best])
 
 
-def pose_error(pose, true):
-    """The larger angle in degrees of rotation and direction; 180 without a pose."""
-    if not pose.found:
-        return 180
-    cosines = (np.trace(pose.R @ true[:3, :3].T) - 1) / 2, pose.t.ravel() @ true[:3, 3] / np.linalg.norm(true[:3, 3])
-    return np.degrees(np.arccos(np.clip(cosines, -1, 1))).max()
-
-
 def areas(errors, limit):
     return np.maximum(0, 1 - np.array(errors, float) / limit)
 
@@ -79,7 +72,7 @@ def measure(images, features, ratio, truth):
     moved = opencv_iib.propagateMatches(images[0], np.column_stack(features[0][:2]), images[1], np.column_stack(features[1][:2]), pairs)
     start, camera = time.process_time(), truth[0].matrix
     pose = opencv_iib.findRelativePose(moved.points1, moved.points2, camera, camera)
-    return len(pairs), None, pose_error(pose, truth[1]), 1000 * (time.process_time() - start)
+    return len(pairs), None, error_of(pose.R, pose.t, truth[1][:3, :3], truth[1][:3, 3]) if pose.found else 180, 1000 * (time.process_time() - start)
 
 
 def main():

@@ -14,7 +14,6 @@ const int LEAST_SIDE = 16;           // pixels of a view
 const double LEAST_TILT = 1.25;      // smaller tilts become one scale for both axes
 const double LEAST_SHORTENED = .95;  // larger scales become 1
 const double MOST_ENLARGED = 2;      // factor: further enlargement gives no more points
-const double MOST_TURN = 8 * CV_PI / 180, MOST_SCALE = 1.2;  // between maps whose views match equally well
 
 Mat affine(const Matx33d& map) { return Mat(map.get_minor<2, 3>(0, 0)); }
 

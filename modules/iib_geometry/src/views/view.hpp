@@ -59,6 +59,9 @@ Matx33d affineAt(const Matx33d& transform, const Point2d& point);
 //! The similarity nearest to an affine map, with its translation.
 Matx33d similarityOf(const Matx33d& map);
 
+//! Largest rotation (radians) and scale between images that match as they are.
+constexpr double MOST_TURN = 8 * CV_PI / 180, MOST_SCALE = 1.2;
+
 //! Whether the views of two maps are so similar that images match equally well in both.
 bool haveSimilarViews(const Matx33d& map, const Matx33d& other);
 
