@@ -58,8 +58,8 @@ Matches that cv::iib::refineMatches refined make the pose more accurate where th
 @param reason if not null: why there is no pose, a sentence; empty if there is one
 @param covariances N x 3, CV_32F or CV_64F, pixels^2: of the places of the matches, xx, xy, yy, as refineMatches and propagateMatches give them. What
     was located less exactly then counts less in the choice among poses: by 1 / sqrt(1 + sum of both variances). Empty: all count alike
-@return false, with R, t and covariance empty (NaN where their size is fixed), if the matches that agree are not more than
-    chance, or two poses explain them as well
+@return false, with R, t and covariance empty (NaN where their size is fixed), if random matches or matches displaced at
+    random would agree as well, or two poses explain the matches equally well
 @throws cv::Exception for points of a wrong type or of different numbers, points that are not finite, matrices that are
     not a camera's, covariances of another type or number, or a scale that is negative or not finite */
 CV_EXPORTS_W bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraMatrix1,
