@@ -130,6 +130,15 @@ PoseErrors estimateErrors(
     return errors;
 }
 
+/** Logarithm of the number of poses that would agree as well with matches displaced at random. Many poses have their epipolar lines near such
+matches. So only matches in a wide band around the lines are counted: displaced ones are uniformly distributed across it. */
+double logFalseAlarmsNearby(const EpipolarProblem& problem, const PoseFit& fit, const Verdict& verdict)
+{
+    const double wide = std::max(5 * problem.mostScale(), 3 * fit.limit);  // pixels
+    return verdict.logFalseAlarms(within(wide, fit.squared), within(fit.limit, fit.squared),
+            problem.sampleSize(), fit.limit / wide);
+}
+
 //! Why the pose is refused; empty if it is accepted.
 std::string reasonAgainst(
         const EpipolarProblem& problem, const PoseFit& fit, const PoseErrors& errors, const Verdict& verdict)
@@ -141,6 +150,10 @@ std::string reasonAgainst(
                 "the pose that agrees best has matches in %d places of the image, no more than chance may "
                 "give: the images may not show the same",
                 verdict.places(within(3 * std::max(fit.scale, REFINED), fit.squared)));
+    const double most = 1;  // ten such poses: eight right matches, inexact ones, show no less
+    if (logFalseAlarmsNearby(problem, fit, verdict) > most)
+        return "the matches are near their epipolar lines, but not nearer than if they were displaced at "
+               "random: they may be inexact, or the images may not show the same";
     if (verdict.isOfSmallParts(within(fit.limit, fit.squared), problem.sampleSize(), fit.chance))
         return "the matches that agree are in small parts of the image, and the others do not agree: a "
                "logo, a caption?";

@@ -195,6 +195,21 @@ TEST(RelativePose, a_match_of_unusual_parallax_is_left_out)
     EXPECT_TRUE(withinByMoreThanChance(squared, parallaxes, 1)[50]);
 }
 
+// Displaced by 20 pixels, matches are still nearer to the epipolar lines of many poses than wrong matches are.
+TEST(RelativePose, matches_displaced_at_random_have_no_pose_and_inexact_ones_have)
+{
+    RNG random(71);
+    int displaced = 0, inexact = 0;
+    for (int trial = 0; trial < 10; trial++)
+    {
+        const RelativePose truth = randomPose(random, .1);
+        displaced += Found(Views(random, truth, 200, 0, 20)).found;
+        inexact += Found(Views(random, truth, 200, 50, 3)).found;
+    }
+    EXPECT_EQ(0, displaced);
+    EXPECT_GE(inexact, 9);
+}
+
 // 49 of 350 matches are right; less than one sample in ten thousand is free of wrong matches.
 TEST(RelativePose, is_found_by_few_right_matches_within_half_a_pixel)
 {
