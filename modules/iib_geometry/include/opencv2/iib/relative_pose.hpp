@@ -51,7 +51,8 @@ Refined matches (cv::iib::refineMatches) make the pose more accurate.
 @param reason if not null: why there is no pose, a sentence; empty if there is one
 @param covariances N x 3, CV_32F or CV_64F, pixels^2: xx, xy and yy of the points, as refineMatches and propagateMatches return them. In the
     choice among poses, a match counts by 1 / sqrt(1 + xx + yy). Empty: all matches count alike
-@return whether there is a pose, more significant than one of random matches or of matches displaced at random; if not, R, t and covariance are empty (NaN if their size is fixed)
+@return whether there is a pose, more significant than one of random matches or of matches displaced at random; if not, R, t and covariance
+    are empty (NaN if their size is fixed)
 @throws cv::Exception for points of a wrong type or of different numbers, points that are not finite, matrices that are
     not a camera's, covariances of another type or number, or a scale that is negative or not finite */
 CV_EXPORTS_W bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraMatrix1,
