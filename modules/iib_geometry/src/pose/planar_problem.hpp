@@ -37,6 +37,7 @@ public:
 
     //! The same transform between pixels, and that of a model between pixels.
     Matx33d inPixels(const Matx33d& transform) const;
+    Matx33d fromPixels(const Matx33d& transform) const;
 
     //! Standard deviation in pixels of the place that a pixel of the image has in the reference.
     double deviation(const Matx33d& transform, const Square<Step>& covariance, const Point2d& pixel) const;
