@@ -121,6 +121,26 @@ TEST(Alignment, refuses_a_logo_that_is_all_that_an_image_shows)
     }
 }
 
+//! However many matches a logo at two places has, it is small; a larger part at the same places is one that both show.
+TEST(Alignment, refuses_a_logo_at_two_places)
+{
+    Mat fine, transform;
+    resize(picture(13), fine, Size(), .5, .5, INTER_AREA);
+    for (int side : {76, 120})
+    {
+        Mat images[2];
+        for (int i = 0; i < 2; i++)
+        {
+            images[i] = picture(11 + i);
+            fine(Rect(10, 0, side, side)).copyTo(images[i](Rect(14 + 175 * i, 14 + 100 * i, side, side)));
+            resize(i ? inOtherLight(images[i]) : images[i], images[i], Size(), 2, 2, INTER_CUBIC);
+        }
+        for (int model : {ALIGN_TRANSLATION, ALIGN_HOMOGRAPHY})
+            for (int k : {0, 1})
+                EXPECT_EQ(side > 100, alignImages(images[k], images[1 - k], transform, model)) << side;
+    }
+}
+
 /** Squares of another depth, by a few pixels: the transform of one depth is as wrong of the other. Above the working size as well, where
 matches of one depth alone are refined. */
 TEST(Alignment, tells_what_a_part_of_the_images_is_beside_by)
