@@ -47,14 +47,16 @@ struct Alignment
     Mat errors;     //!< working pixels
     Judgement judgement;
 
-    /** @param isBeside `beside` if it is known, else below 0.
+    /** @param coarse if not null: the alignment whose matches were refined at full size.
     @param pixel working pixels per pixel in which the matches were refined. */
-    Alignment(const AlignedPoints& matched, const WorkingPair& pair, int model, int tried, double isBeside,
-            double pixel)
+    Alignment(const AlignedPoints& matched, const WorkingPair& pair, int model, int tried,
+            const Alignment* coarse, double pixel)
         : points(matched), evidence(points, pair, tried),
-          all(fittedTransforms(points, model == ALIGN_AUTO ? ALIGN_TRANSLATION : model)),
+          all(coarse ? fittedTransforms(points, coarse->fitted()) : fittedTransforms(evidence, model)),
           best(model == ALIGN_AUTO ? simplestTrue(all, evidence) : 0),
-          beside(isBeside < 0 && fitted().exists() ? deviationBeside(fitted(), evidence) : isBeside)
+          beside(coarse               ? coarse->beside
+                  : fitted().exists() ? deviationBeside(fitted(), evidence)
+                                      : 0)
     {
         if (fitted().exists())
             errors = cornerErrors(fitted(), points, pair.imageCorners(), beside, pixel);
@@ -90,12 +92,12 @@ struct Alignment
 
 Answer answerOf(const WorkingPair& pair, int model, int tried)
 {
-    const Alignment first(pair.match(), pair, model, tried, -1, 1);
+    const Alignment first(pair.match(), pair, model, tried, nullptr, 1);
     if (!first.judgement.against.empty() || !pair.isReduced())
         return first.inPixels(model);
     const FittedTransform& fitted = first.fitted();
     const Alignment again(pair.refined(first.points, fitted.agree, fitted.transform()), pair, model, tried,
-            first.beside, 1 / pair.inPixels(1));
+            &first, 1 / pair.inPixels(1));
     // Images that are blurred, or sharp in one part alone, refine too few matches at full size.
     const bool isFiner = again.fitted().count() > LEAST_REFINED * fitted.count() && again.judgement.isLast;
     return (isFiner ? again : first).inPixels(model);

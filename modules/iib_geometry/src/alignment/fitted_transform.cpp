@@ -12,12 +12,16 @@ const double LEAST_SCALE = .25;  // of the inliers' noise, working pixels
 /* Log likelihood that refutes a simpler model, per additional parameter and per inlier. True models gain up to 3.9 per parameter or .23 per inlier
 by noise and lens distortion; untrue ones with underestimated errors gain 5.3 and .29 (103 pairs under changed illumination, each model). */
 const double LEAST_GAIN = 4.5, LEAST_GAIN_OF_MATCH = .24;
+const double WIDE = 8;      // first scale of a fit from a richer transform, working pixels
+const size_t ENOUGH = 200;  // matches for the wide scales
 // A transform of another part loses log likelihood on inliers of the simple one, and most of them. A true one keeps nine of ten.
 const double LEAST_LOSS = .1, MOST_SHARED = .8;
 
 //! The affine part at the origin, reduced to a model.
 Matx33d simplified(const Matx33d& model, int kind)
 {
+    if (kind == ALIGN_HOMOGRAPHY)
+        return model;
     Matx33d affine = affineAt(model, Point2d());
     if (kind == ALIGN_TRANSLATION)
         affine(0, 0) = affine(1, 1) = 1, affine(0, 1) = affine(1, 0) = 0;
@@ -41,6 +45,15 @@ std::vector<double> gains(const FittedTransform& richer, const FittedTransform& 
     return result;
 }
 
+//! ENOUGH of the matches or more.
+AlignedPoints thinned(const AlignedPoints& points)
+{
+    Verdict::Marks some(points.image.rows);
+    for (size_t i = 0; i < some.size(); i += std::max<size_t>(some.size() / ENOUGH, 1))
+        some[i] = true;
+    return marked(points, some);
+}
+
 int moreParameters(const FittedTransform& richer, const FittedTransform& simple)
 {
     return richer.problem.parameters() - simple.problem.parameters();
@@ -61,14 +74,33 @@ FittedTransform::FittedTransform(const AlignedPoints& points, int kind)
     agree.resize(problem.size());
 }
 
-FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const FittedTransform& richer)
-    : model(kind), problem(points.reference, points.image, kind), limit(richer.limit)
+FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const Matx33d& from, double scale)
+    : model(kind), problem(points.reference, points.image, kind), limit(3 * LEAST_SCALE),
+      agree(problem.size())
 {
-    const double roughly = 1e-4;
-    fit.model = simplified(richer.fit.model, kind);
-    fit.scale = richer.fit.scale;
-    polish(problem, Loss{fit.scale}, roughly, fit.model);
-    problem.squaredErrors(fit.model, fit.squared);
+    const double roughly = 1e-3, finely = 1e-9;
+    if (problem.size() < problem.sampleSize())
+        return;
+    fit.model = simplified(problem.fromPixels(from), kind);
+    if ((size_t)problem.size() > 2 * ENOUGH && scale > 2 * LEAST_SCALE)
+    {
+        fit.model = problem.fromPixels(FittedTransform(thinned(points), kind, from, scale).transform());
+        scale = LEAST_SCALE;
+    }
+    for (; scale > LEAST_SCALE; scale /= 2)
+        polish(problem, Loss{scale}, roughly, fit.model);
+    bool found = false;
+    for (scale = LEAST_SCALE; !found && scale <= 2 * LEAST_SCALE; scale *= 2)
+    {
+        polish(problem, Loss{scale}, roughly, fit.model);
+        problem.squaredErrors(fit.model, fit.squared);
+        found = findScale(fit.squared, FARTHEST_OF_CHOICE * scale, problem.parameters(), fit.scale);
+        if (!found)
+            fit.scale = scale;
+    }
+    polish(problem, Loss{fit.scale}, finely, fit.model);
+    finish(problem, fit);
+    limit = 3 * std::max(fit.scale, LEAST_SCALE);
     agree = within(limit, fit.squared);
 }
 
@@ -94,11 +126,31 @@ AlignedPoints marked(const AlignedPoints& points, const Verdict::Marks& marks)
     return some;
 }
 
-std::vector<FittedTransform> fittedTransforms(const AlignedPoints& points, int simplest)
+std::vector<FittedTransform> fittedTransforms(const Evidence& evidence, int model)
+{
+    const AlignedPoints& points = evidence.points;
+    std::vector<FittedTransform> fitted;
+    FittedTransform richest(points, ALIGN_HOMOGRAPHY);
+    const bool isRich = richest.exists() && richest.isSignificant(evidence);
+    for (int kind = model == ALIGN_AUTO ? ALIGN_TRANSLATION : model; kind < ALIGN_HOMOGRAPHY; kind++)
+        if (isRich && kind != model)
+        {
+            const Matx33d from = kind == ALIGN_TRANSLATION
+                                         ? FittedTransform(thinned(points), kind).transform()
+                                         : richest.transform();
+            fitted.emplace_back(points, kind, from, WIDE);
+        }
+        else
+            fitted.emplace_back(points, kind);
+    fitted.push_back(std::move(richest));
+    return fitted;
+}
+
+std::vector<FittedTransform> fittedTransforms(const AlignedPoints& points, const FittedTransform& coarse)
 {
     std::vector<FittedTransform> fitted;
-    for (int model = simplest; model <= ALIGN_HOMOGRAPHY; model++)
-        fitted.emplace_back(points, model);
+    for (int kind = coarse.model; kind <= ALIGN_HOMOGRAPHY; kind++)
+        fitted.emplace_back(points, kind, coarse.transform(), 2 * LEAST_SCALE);
     return fitted;
 }
 
@@ -136,7 +188,8 @@ bool isOfAnotherPart(const FittedTransform& richer, const FittedTransform& simpl
 int simplestModel(const FittedTransform& fitted, const AlignedPoints& points)
 {
     int model = ALIGN_TRANSLATION;
-    while (model < fitted.model && gainOf(fitted, FittedTransform(points, model, fitted)) > NEEDED_GAIN)
+    while (model < fitted.model &&
+            gainOf(fitted, FittedTransform(points, model, fitted.transform(), LEAST_SCALE)) > NEEDED_GAIN)
         model++;
     return model;
 }

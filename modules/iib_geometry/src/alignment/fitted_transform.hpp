@@ -36,8 +36,9 @@ struct FittedTransform
     //! The transform with which most matches agree.
     FittedTransform(const AlignedPoints& points, int model);
 
-    //! A transform with less freedom, fitted from a richer one.
-    FittedTransform(const AlignedPoints& points, int model, const FittedTransform& richer);
+    /** A transform fitted from another one, of working pixels and of as much freedom or more.
+    @param scale of the first fit, working pixels; the matches' own scale is estimated from there. */
+    FittedTransform(const AlignedPoints& points, int model, const Matx33d& from, double scale);
 
     bool exists() const { return !fit.squared.empty(); }
     int count() const { return (int)std::count(agree.begin(), agree.end(), true); }
@@ -48,8 +49,12 @@ struct FittedTransform
 
 AlignedPoints marked(const AlignedPoints& points, const Verdict::Marks& marks);
 
-//! The simplest model and all richer ones; the homography is last.
-std::vector<FittedTransform> fittedTransforms(const AlignedPoints& points, int simplest);
+/** The model and all richer ones; the homography is last.
+@param model AlignmentModel; ALIGN_AUTO: all. */
+std::vector<FittedTransform> fittedTransforms(const Evidence& evidence, int model);
+
+//! The same of matches that all agree with a transform, after they were refined.
+std::vector<FittedTransform> fittedTransforms(const AlignedPoints& points, const FittedTransform& coarse);
 
 /** Log likelihood that a richer transform gains per additional parameter, by Cauchy's loss under the richer one's scale. The largest gains are
 left out, as many as there are additional parameters: they may be wrong matches that the richer transform fits exactly. */

@@ -148,8 +148,9 @@ Judgement judge(
     if (!judgement.against.empty())
         return judgement;
     if (areOfTheSensor(fitted, evidence))
-        return refused("the matches are single pixels that do not move, while larger points moved: hot "
-                       "pixels or dust of the camera; mask or correct them");
+        return {"the matches are single pixels that do not move, while larger points moved: hot pixels or "
+                "dust of the camera; mask or correct them",
+                true, ""};
     const Parts parts(fitted, evidence);
     if (isOverlay(parts.reference, parts.image))
         return refused(

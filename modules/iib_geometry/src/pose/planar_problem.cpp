@@ -190,6 +190,12 @@ Matx33d PlanarProblem::inPixels(const Matx33d& transform) const
     return pixels * (1 / pixels(2, 2));
 }
 
+Matx33d PlanarProblem::fromPixels(const Matx33d& transform) const
+{
+    const Matx33d model = fromReference_ * transform * fromImage_.inv();
+    return model * (1 / model(2, 2));
+}
+
 double PlanarProblem::deviation(
         const Matx33d& transform, const Square<Step>& covariance, const Point2d& pixel) const
 {

@@ -37,6 +37,7 @@ public:
 
     //! Converts a Model, which transforms normalized coordinates, to pixels.
     Matx33d inPixels(const Matx33d& transform) const;
+    Matx33d fromPixels(const Matx33d& transform) const;
 
     //! Standard deviation, in pixels of the reference, of a transformed pixel of the image.
     double deviation(const Matx33d& transform, const Square<Step>& covariance, const Point2d& pixel) const;

@@ -34,9 +34,9 @@ There is no transform, and `reason` says why, where
 - a model of more freedom agrees significantly better;
 - the camera moved through a scene with depth (parallax): matches in other places lie beside the transform, along lines through one point;
 - the images are equal to the pixel in some parts and differ in the others, such as captions, a frame or a part of a vehicle;
-- the matches are single pixels that do not move, such as hot pixels;
+- many matches are marks of a few pixels that do not move, such as hot pixels or dust, while larger points moved;
 - the matches lie in small parts alone, such as a logo or a narrow overlap: neither all over the part that both images show, nor in one place. A place is
-  a connected group of 15 of 192 cells with 80 matches;
+  a connected group of 15 of 192 cells with 80 matches, which span .045 of each image;
 - the standard deviation of a corner is more than a quarter of the image's diagonal.
 
 The verdict does not depend on the images' sizes. Where a part moved otherwise, or only one part agrees, the transform is that of the larger part, and
