@@ -11,7 +11,9 @@ namespace {
 
 const double LEAST_SCALE = .1, MOST_SCALE = 1000;  // pixels
 const double RANK = 1e-13;                         // of covariances in double precision
-const double ONE_DIRECTION = 1;                    // radians: of poses more apart, t may have any
+// Variance of the direction over the one that matches show: chosen on rendered places.
+const double OF_DIRECTION = 1.3;
+const double ONE_DIRECTION = 1;  // radians: of poses more apart, t may have any
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {
@@ -127,6 +129,9 @@ PoseErrors estimateErrors(
         if (norm(Vec2d(step.val + 3)) > ONE_DIRECTION)
             errors.covariance += anyDirection;
     }
+    const double deviation = std::sqrt(OF_DIRECTION);
+    const auto scales = Square<EpipolarProblem::Step>::diag({1, 1, 1, deviation, deviation});
+    errors.covariance = scales * errors.covariance * scales;
     errors.covariance = limited(errors.covariance, LARGEST_DEVIATION, RANK);
     return errors;
 }
