@@ -3,6 +3,7 @@
 #include "pose_search.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <set>
 
@@ -17,11 +18,12 @@ constexpr double MAX_ERROR = .006;      // of the longer side: inlier threshold
 constexpr double LEAST_SHARE = .02;     // of inliers: in an unknown place a few matches agree by chance
 constexpr double MAX_UNCERTAINTY = .1;  // of the scene's distance: three standard deviations of the position
 constexpr size_t LEAST_REFINED = 16;    // matches with an image of the map; images with fewer are not refined
-constexpr double COMMON = 1.5;          // of the covariance: matches share errors that they do not show
-constexpr int ROUNDS = 4;               // of refining the pose and finding inliers
-constexpr int GUIDED_ROUNDS = 8;        // of guided matching, at most
-constexpr double CONVERGED = .1;        // pixels of motion that end guided matching
-constexpr int LINE_ROUNDS = 2;          // of matching lines and refining the pose
+// Variances over those that matches show, since matches share errors: of the centre, and of the rotation.
+constexpr double OF_CENTRE = 1.5, OF_ROTATION = 2;
+constexpr int ROUNDS = 4;         // of refining the pose and finding inliers
+constexpr int GUIDED_ROUNDS = 8;  // of guided matching, at most
+constexpr double CONVERGED = .1;  // pixels of motion that end guided matching
+constexpr int LINE_ROUNDS = 2;    // of matching lines and refining the pose
 
 //! Drops repeated matches of a keypoint with one point, in several images of the map.
 std::vector<Match> withoutRepeated(std::vector<Match> matches)
@@ -150,7 +152,9 @@ public:
         location_.reason = "";
         location_.inliers = keypointsOf(inliers_);
         location_.cameraFromWorld = frame_.toWorld(pose_);
-        location_.covariance = COMMON * frame_.toWorld(covariance_);
+        const double centre = std::sqrt(OF_CENTRE), rotation = std::sqrt(OF_ROTATION);
+        const Matx66d scales = Matx66d::diag({centre, centre, centre, rotation, rotation, rotation});
+        location_.covariance = scales * frame_.toWorld(covariance_) * scales;
         for (const Match& m : inliers_)
             if (m.keypoint >= 0)
             {

@@ -11,6 +11,7 @@ namespace {
 
 const double LEAST_SCALE = .1, MOST_SCALE = 1000;  // pixels
 const double RANK = 1e-13;                         // keeps covariances invertible in double precision
+const double OF_DIRECTION = 1.3;                   // true over estimated variance of t, fitted on rendered places
 const double ONE_DIRECTION = 1;                    // radians: if two possible t differ by more, t is unknown
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
@@ -126,6 +127,9 @@ PoseErrors estimateErrors(
         if (norm(Vec2d(step.val + 3)) > ONE_DIRECTION)
             errors.covariance += anyDirection;
     }
+    const double deviation = std::sqrt(OF_DIRECTION);
+    const auto scales = Square<EpipolarProblem::Step>::diag({1, 1, 1, deviation, deviation});
+    errors.covariance = scales * errors.covariance * scales;
     errors.covariance = limited(errors.covariance, LARGEST_DEVIATION, RANK);
     return errors;
 }
@@ -147,8 +151,8 @@ std::string reasonAgainst(
         return "no pose agrees with five matches or more";
     if (fit.logFalseAlarms > Verdict::CERTAIN)
         return format(
-                "the pose that agrees best has matches in %d places of the image, no more than chance may "
-                "give: the images may not show the same",
+                "the pose that agrees best has matches in %d places of the image, which could be "
+                "random: the images may not show the same scene",
                 verdict.places(within(3 * std::max(fit.scale, REFINED), fit.squared)));
     const double most = 1;  // ten such poses: eight right matches, inexact ones, show no less
     if (logFalseAlarmsNearby(problem, fit, verdict) > most)

@@ -144,7 +144,7 @@ struct Location
     - the disagreement among parts of the image;
     - the map's own error, by leave-one-out over its images; zero if no point is seen by three images.
 
-    The first two are multiplied by 1.5, for errors that matches share. Errors that all images of the map share, such as a
+    The first two are multiplied by 1.5 (centre) and 2 (rotation), for errors that matches share. Errors that all images of the map share, such as a
     wrong scale, are not included. */
     Matx66d covariance;
     int matches = 0;              //!< number of keypoints matched with points of the map
