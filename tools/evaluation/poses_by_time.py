@@ -9,10 +9,7 @@ a pose; what is there is not computed again. Milliseconds are of one thread's pr
 error is the larger angle in degrees of rotation and direction. OpenCV's detectors are as in tools/evaluation/detectors.cpp, each at its own
 best: upright, the strongest points without SIFT's copies of other orientations. SIFT and ORB find and describe in two calls for that.
 
-All but ALIKED measured anew, whose means stay in doc/results:
-
-    rm PAIRS/poses_by_time.*
-    tools/evaluation/poses_by_time.py PAIRS DATA --only 'recommended chain' --only ORB --only AKAZE --only SIFT --only 'SIFT normalized'
+    tools/evaluation/poses_by_time.py PAIRS DATA
     tools/pages/summaries.py PAIRS doc/results COMMIT MACHINE
     tools/pages/pages.py
 
