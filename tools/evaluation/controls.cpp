@@ -17,7 +17,7 @@ namespace {
 
 const float RATIOS[] = {.8f, .85f, .9f, .92f, .95f};
 const int POINTS[] = {500, 1000, 2000};  // an image, where neighbours are counted
-const double NOISE = 14;                 // grey levels, of the second image
+const double NOISE[] = {6, 14};          // grey levels, of the second image
 const double CLIP = 2;                   // of CLAHE, OpenCV's tutorials' choice
 const double DEPTH_STEP = .004;          // metres; tools/synthetic/common.inc
 const double DEPTH_TOLERANCE = .02;      // share of the depth
@@ -229,11 +229,14 @@ int controls(const Options& options, const std::vector<ImagePair>&)
                             [&](const Fields& key, const Described& from, const Described& to) {
                                 countNeighbours(points, key, from, to);
                             });
-            const cv::Mat noisy = withNoise(target, NOISE);
-            eachMethod(noisy, NOISE, options.points, NOISY,
-                    [&](const Fields& key, const Described& from, const Described& to) {
-                        findPoses(noisy, NOISE, key, from, to);
-                    });
+            for (double noise : NOISE)
+            {
+                const cv::Mat noisy = withNoise(target, noise);
+                eachMethod(noisy, noise, options.points, NOISY,
+                        [&](const Fields& key, const Described& from, const Described& to) {
+                            findPoses(noisy, noise, key, from, to);
+                        });
+            }
             eachMethod(target, 0, options.points, ALL,
                     [&](const Fields& key, const Described& from, const Described& to) {
                         if (known)

@@ -9,10 +9,7 @@ a pose. Existing rows are not computed again. Milliseconds are one thread's proc
 error is the larger angle in degrees of rotation and direction. OpenCV's detectors are as in tools/evaluation/detectors.cpp, each at its own
 best: upright, the strongest points without SIFT's copies of other orientations. SIFT and ORB find and describe in two calls for that.
 
-To measure all methods but ALIKED again, whose means stay in doc/results:
-
-    rm PAIRS/poses_by_time.*
-    tools/evaluation/poses_by_time.py PAIRS DATA --only 'recommended chain' --only ORB --only AKAZE --only SIFT --only 'SIFT normalized'
+    tools/evaluation/poses_by_time.py PAIRS DATA
     tools/pages/summaries.py PAIRS doc/results COMMIT MACHINE
     tools/pages/pages.py
 

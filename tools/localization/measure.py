@@ -72,14 +72,16 @@ def chain(folder, work, step=1):
     return Localizer(work / 'map', POINTS)
 
 
-def sift(folder, work, step=1, *, normalized):
+def sift(folder, work, step=1, *, normalized, refine):
     """A Sift localizer in a map of a place."""
     write_model(work / 'model', *read_place(folder, step))
-    return Sift(work / 'model', folder / 'images', POINTS, normalized)
+    return Sift(work / 'model', folder / 'images', POINTS, normalized, refine)
 
 
-METHODS = {'recommended chain': chain, 'SIFT, normalized image': functools.partial(sift, normalized=True),
-           'SIFT, plain image': functools.partial(sift, normalized=False)}
+METHODS = {'recommended chain': chain,
+           **{'SIFT, %s image%s' % (('plain', 'normalized')[normalized], ', refined' * refine): functools.partial(sift, normalized=normalized, refine=refine)
+              for normalized, refine in itertools.product((True, False), (True, False))}}
+PHOTOGRAPHED = 'as they are', 'relit'
 
 
 def error(found, truth):
@@ -177,7 +179,7 @@ def photographs(data, work):
         others = list(read_place(folder)[1])[1::2]
         for method, make in METHODS.items():
             localizer = make(folder, work / f'{folder.name} {method}', 2)
-            for light, lit in (('as they are', lambda image, name: image), ('relit', relit)):
+            for light, lit in zip(PHOTOGRAPHED, (lambda image, name: image, relit)):
                 rows.append({'place': folder.name, 'method': method, 'light': light, **summary(list(localize(localizer, folder, others, lit)))})
     return rows
 
@@ -239,10 +241,16 @@ def write_pictures(out, light, drawn):
         writer.release()
 
 
+def write_results(out, results):
+    lines = ',\n'.join('"%s": %s' % (name, json.dumps(value)) for name, value in results.items())
+    (out / 'results.json').write_text('{\n%s\n}\n' % lines)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('data', type=pathlib.Path)
     parser.add_argument('out', type=pathlib.Path)
+    parser.add_argument('--photographs', action='store_true', help='measure them alone, and replace their rows in OUT/results.json')
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     opencv_iib.setNumThreads(1)
@@ -251,6 +259,10 @@ def main():
     folder, given = options.data / 'map', os.environ.get('OPENCV_TEST_DATA_PATH')
     with tempfile.TemporaryDirectory() as work:
         work = pathlib.Path(work)
+        if options.photographs:
+            results = json.loads((options.out / 'results.json').read_text())
+            kept = [row for row in results['rows'] if row['light'] not in PHOTOGRAPHED]
+            return write_results(options.out, {**results, 'rows': kept + photographs(pathlib.Path(given) / 'strecha', work)})
         rows, seen, ours = street(options.data, work, lights)
         rows += command(options.data, work, lights)
         results = {'rows': rows, 'lights': lights, 'seasons': seasons(options.data, work, lights), 'unknown': None,
@@ -268,8 +280,7 @@ def main():
             if drawn:
                 write_pictures(options.out, light, drawn)
                 results['pictures'].append(light)
-    lines = ',\n'.join('"%s": %s' % (name, json.dumps(value)) for name, value in results.items())
-    (options.out / 'results.json').write_text('{\n%s\n}\n' % lines)
+    write_results(options.out, results)
 
 
 if __name__ == '__main__':

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 
 """A baseline for opencv_iib.localization: SIFT with the geometry of pycolmap."""
+import collections
 import dataclasses
 import itertools
 import tempfile
@@ -58,32 +59,60 @@ def triangulated(model, places, matches):
         return pycolmap.triangulate_points(model, folder + '/database.db', folder, folder, options=options)
 
 
-class Sift:
-    """Has the interface of Localizer. Matches all pairs of the map's images, and a query image with each of them."""
+def refined_tracks(model, greys, rows):
+    """Keypoints by image: each is moved to where its surroundings agree best with those of the first keypoint of its point."""
+    pairs, moved = collections.defaultdict(list), {i: each.copy() for i, each in rows.items()}
+    for point in model.points3D.values():
+        first, *others = point.track.elements
+        for other in others:
+            pairs[first.image_id, other.image_id].append((first.point2D_idx, other.point2D_idx))
+    for (a, b), each in pairs.items():
+        if a != b:
+            each = np.array(each, np.int32)
+            moved[b][each[:, 1], :2] = opencv_iib.refineMatches(greys[a], rows[a], greys[b], rows[b], each).points2
+    return moved
 
-    def __init__(self, model, images, points, normalized):
+
+class Sift:
+    """Has the interface of Localizer. Matches all pairs of the map's images, and a query image with each of them. With `refine` the points of
+    the map, and then those of the query image, are moved by refineMatches."""
+
+    def __init__(self, model, images, points, normalized, refine):
         """Makes a map from the folder of a COLMAP model."""
-        self._sift = cv2.SIFT_create(points)
+        self._sift, self._refine = cv2.SIFT_create(points), refine
         self._detector = opencv_iib.NormalizedDetector(self._sift) if normalized else self._sift
-        model = pycolmap.Reconstruction(model)
-        found = {i: self._describe(cv2.imread(str(images / model.image(i).name), cv2.IMREAD_GRAYSCALE)) for i in model.reg_image_ids()}
+        posed = pycolmap.Reconstruction(model)
+        greys = {i: cv2.imread(str(images / posed.image(i).name), cv2.IMREAD_GRAYSCALE) for i in posed.reg_image_ids()}
+        found = {i: self._describe(grey) for i, grey in greys.items()}
+        rows = {i: each for i, (each, _) in found.items()}
         matches = [(a, b, matched(found[a][1], found[b][1])) for a, b in itertools.combinations(found, 2)]
-        model = triangulated(model, {i: places for i, (places, _) in found.items()}, matches)
+        mapped = triangulated(posed, {i: each[:, :2] + .5 for i, each in rows.items()}, matches)
+        if refine:
+            rows = refined_tracks(mapped, greys, rows)
+            mapped = triangulated(pycolmap.Reconstruction(model), {i: each[:, :2] + .5 for i, each in rows.items()}, matches)
         self._images = []
         for i, (_, codes) in found.items():
-            seen = [(row, point.point3D_id) for row, point in enumerate(model.image(i).points2D) if point.has_point3D()]
+            seen = [(row, point.point3D_id) for row, point in enumerate(mapped.image(i).points2D) if point.has_point3D()]
             if len(seen) > 1:
-                self._images.append((codes[[row for row, _ in seen]], np.array([model.point3D(p).xyz for _, p in seen])))
+                chosen = [row for row, _ in seen]
+                self._images.append((codes[chosen], np.array([mapped.point3D(p).xyz for _, p in seen]), greys[i], rows[i][chosen]))
 
     def _describe(self, grey):
+        """Rows of x, y, size and angle, and descriptors."""
         keypoints, codes = self._sift.compute(grey, self._detector.detect(grey, None))
-        return np.array([k.pt for k in keypoints]).reshape(-1, 2) + .5, np.zeros((0, 128)) if codes is None else codes
+        return np.array([(*k.pt, k.size, k.angle) for k in keypoints], np.float32).reshape(-1, 4), np.zeros((0, 128)) if codes is None else codes
+
+    def _places(self, image, rows, pairs, mapped, known):
+        """Where the image has the matched points, as COLMAP counts pixels."""
+        if not self._refine or not len(pairs):
+            return rows[pairs[:, 0], :2] + .5
+        return opencv_iib.refineMatches(mapped, known, image, rows, pairs[:, ::-1].astype(np.int32)).points2 + .5
 
     def localize(self, image, camera):
-        places, codes = self._describe(image)
-        pairs = sorted(((matched(codes, known), points) for known, points in self._images), key=lambda m: -len(m[0]))[:COMPARED]
-        seen = np.concatenate([places[found[:, 0]] for found, _ in pairs])
-        points = np.concatenate([xyz[found[:, 1]] for found, xyz in pairs])
+        rows, codes = self._describe(image)
+        pairs = sorted(((matched(codes, known[0]), known) for known in self._images), key=lambda m: -len(m[0]))[:COMPARED]
+        seen = np.concatenate([self._places(image, rows, found, *known[2:]) for found, known in pairs])
+        points = np.concatenate([known[1][found[:, 1]] for found, known in pairs])
         limit = {'ransac': {'max_error': MAX_ERROR * max(camera.width, camera.height), 'random_seed': 1}}
         taken = pycolmap.Camera(model=camera.model, width=camera.width, height=camera.height, params=camera.params)
         pose = pycolmap.estimate_and_refine_absolute_pose(seen, points, taken, limit) if len(seen) >= LEAST_INLIERS else None

@@ -10,6 +10,7 @@ import controls
 import summaries
 import tables
 import timings
+import ways
 
 matplotlib.use('svg')
 matplotlib.rcParams.update({'svg.hashsalt': 'iib', 'axes.grid': True, 'grid.linewidth': .4, 'figure.constrained_layout.h_pad': .1})
@@ -19,8 +20,8 @@ from matplotlib import ft2font, ticker  # noqa: E402
 GREY, RED, BLUE = '#64748b', '#b91c1c', '#1d4ed8'
 # For each detector that `cost` draws: its colour, and the place of its name in points from the line's end, clear of other lines.
 BESIDE = (8, 0), 'left'
-DRAWN = {'recommended chain': (RED, (-20, 30), 'center'), 'ALIKED-n16': (BLUE, *BESIDE), 'ORB': (GREY, (-8, 10), 'right'),
-         'AKAZE': ('#a16207', (0, -36), 'center'), 'SIFT': ('#047857', (14, -20), 'left'), 'SIFT normalized': ('#7e22ce', (-8, 6), 'right')}
+DRAWN = {'recommended chain': (RED, (-20, -76), 'center'), 'ALIKED-n16': (BLUE, *BESIDE), 'ORB': (GREY, (-8, 10), 'right'),
+         'AKAZE': ('#a16207', (8, -14), 'left'), 'SIFT': ('#047857', (14, -20), 'left'), 'SIFT normalized': ('#7e22ce', (-8, 6), 'right')}
 FAR = 1000  # centimetres
 WIDTH = 9  # inches, of every chart
 ENDS = {'elinewidth': .8}  # of confidence intervals
@@ -62,12 +63,11 @@ def speed():
 
 
 def poses():
-    """Every method at its best ratio, in other light; below them, on the pairs of `cost`, the chain and ALIKED with LightGlue."""
+    """Every method at its best ratio, in other light; below them, of the run of `cost`, ALIKED with LightGlue."""
     bars = [('recommended chain' if method == controls.CHAIN else method[0] if len({*method}) == 1 else controls.name(method), controls.found()['other light', *method])
             for method in controls.methods()]
-    timed = {key[0]: ways['refined'] for key, ways in tables.poses_by_time().items() if key[1] == 1000}
-    return scores(bars + [('%s, %s other pairs' % (name, timed[detector]['pairs']), timed[detector]) for name, detector in (
-        ('recommended chain', 'recommended chain'), ('ALIKED + LightGlue', 'ALIKED-n16'))], 'pose score (AUC to 5 degrees; 1 is perfect), rendered places in other light, 1000 points', 2)
+    learned, = (of['refined'] for key, of in ways.found().items() if key[:2] == (ways.LEARNED, 1000))
+    return scores([*bars, ('ALIKED + LightGlue, another run', learned)], 'pose score (AUC to 5 degrees; 1 is perfect), rendered places in other light, 1000 points', 1)
 
 
 def spread(rows, value='at_5'):
@@ -94,13 +94,13 @@ def cost():
     a colour, and its name beside the line's end."""
     figure, axis = plt.subplots(figsize=(5.4, 4.2), layout='constrained')  # small, so that a phone shows all of it
     lines = {}
-    for (detector, points, _), ways in tables.poses_by_time().items():
-        lines.setdefault(detector, []).append((points, ways))
+    for (detector, points, _), of in ways.found().items():
+        lines.setdefault(detector, []).append((points, of))
     for n, (detector, each) in enumerate(lines.items()):
         colour, where, side = DRAWN.get(detector, ('C%d' % n, *BESIDE))
         each.sort(key=lambda one: one[0])
         for way, fill in (('plain', 'none'), ('refined', 'full')):
-            rows = [ways[way] for _, ways in each]
+            rows = [of[way] for _, of in each]
             score, ends = spread(rows)
             axis.errorbar([float(row['milliseconds']) for row in rows], score, ends, marker='o', fillstyle=fill, color=colour,
                           linestyle='-' if way == 'refined' else ':', **ENDS)

@@ -19,6 +19,7 @@ import drawings
 import localization
 import results
 import tables
+import ways
 
 ROOT = tables.ROOT
 
@@ -35,7 +36,7 @@ def results_page(folder):
     if not context:
         sys.exit('%s: no results of iib_evaluation' % folder)
     ours = folder == tables.RESULTS
-    cost = ours and {**tables.learned_figures(), **tables.pose_figures()}
+    cost = ours and {**ways.figures(), **tables.pose_figures()}
     page = {folder / 'index.html': rendered('results.html.j2', {**context, 'cost': cost})}
     if ours:
         page[folder / 'cost.svg'] = charts.cost()

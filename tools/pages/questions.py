@@ -14,7 +14,10 @@ def figures():
     night = {(row['detector'], row['descriptor']): row for row in found if (row['place'], row['points']) == ('light: night', '1000')}
     ours, theirs = night[controls.CHAIN], night[controls.OTHER]
     data = json.loads((RESULTS / 'map.json').read_text())
-    return {'night_pairs': ours['pairs'], 'night_chain': '%.2f' % float(ours['at_5']), 'night_sift': '%.2f' % float(theirs['at_5']),
+    largest = data['rows'][-1]
+    of_map = {name: '%.2g' % (10000 * largest[column] / largest['images'] / unit) for name, column, unit in (
+        ('map_minutes', 'build_seconds', 60), ('map_disk', 'file_mb', 1024), ('map_resident', 'resident_mb', 1024))}
+    return {**of_map, 'map_images': format(largest['images'], ','), 'night_pairs': ours['pairs'], 'night_chain': '%.2f' % float(ours['at_5']), 'night_sift': '%.2f' % float(theirs['at_5']),
             'large_ms': '%.0f' % ms('IIB_Describe_large', 'default', 8)['AVX2'], 'large_orb_ms': '%.0f' % ms('IIB_Describe_large', 'ORB', 8)['AVX2'],
             'align_ms': '%.0f' % ms('IIB_Align_noon_and_winter', 50)['AVX2'], 'map_run': '%s (%s)' % (data['date'], data['machine'])}
 

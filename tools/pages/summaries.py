@@ -139,11 +139,7 @@ PLANS = {
     'wxbs.csv': (lambda row: [row['set'], 'all'], ('method', 'points'), columns('found', 'matches', 'within_10', 'share')),
     'estimators.csv': (light_place, ('detector', 'descriptor', 'points', 'estimator'),
                        {'inliers': column('inliers'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_20': pose_area(20), 'at_5': pose_area(5)}),
-    'poses_by_time.csv': (light_place, ('detector', 'points', 'matches', 'estimator'),
-                          {'milliseconds': column('milliseconds'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_5': pose_area(5)}),
 }
-
-KEPT = {'poses_by_time.csv'}  # methods may be measured in separate runs: the means and commits of others stay
 
 
 def read(file):
@@ -184,20 +180,18 @@ def write(file, heads, rows):
         csv.writer(opened, lineterminator='\n').writerows([heads, *rows])
 
 
-def summarize(source, target, groups_of, keys, values, *commit):
-    """Writes means of each group, and the commit if it is given."""
+def summarize(source, target, groups_of, keys, values):
+    """Writes means of each group."""
     groups = collections.defaultdict(lambda: collections.defaultdict(list))
     for row in read(source):
         for place in groups_of(row):
             groups[(place, *(row[key] for key in keys))][scene(row)].append([value(row) for value in values.values()])
-    lines = {tuple(row.values())[:1 + len(keys)]: list(row.values()) for row in (read(target) if target.name in KEPT else [])}
-    for key, scenes in groups.items():
+    lines = []
+    for key, scenes in sorted(groups.items()):
         every = [pair for scene in scenes.values() for pair in scene]
         ends = interval([[pair[-1] for pair in scene] for scene in scenes.values()])
-        line = [*key, str(len(every)), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends), *commit]
-        if lines.get(key, [])[:-1] != line[:-1] or not commit:  # files that were not measured again keep their commit
-            lines[key] = line
-    write(target, ['place', *keys, 'pairs', *values, 'low', 'high', *['commit'] * len(commit)], (lines[key] for key in sorted(lines)))
+        lines.append([*key, len(every), *(shown(of) for of in zip(*every)), *('%.4g' % end for end in ends)])
+    write(target, ['place', *keys, 'pairs', *values, 'low', 'high'], lines)
 
 
 def misled(row):
@@ -340,16 +334,18 @@ def main():
         print(__doc__.split('\n\n')[0] + '; PAIRS must be one', file=sys.stderr)
         return 2
     pairs, out = map(pathlib.Path, sys.argv[1:3])
-    import controls  # which imports this
-    run = [sys.argv[3], today(), sys.argv[4]] if sys.argv[3:] else ['not recorded']
-    plans = {name: (name, lambda source, target: summarize(source, target, *PLANS[target.name], *run[:target.name in KEPT])) for name in PLANS}
-    of_controls = {'controls.csv': ('controls.csv', controls.summarize), 'neighbours.csv': ('neighbours.csv', controls.summarize_neighbours)}
-    made = {name: how for name, how in {**plans, **OTHERS, **of_controls}.items() if (pairs / how[0]).is_file()}
+    import controls  # which imports this, as do the others
+    import orders
+    import ways
+    plans = {name: (name, lambda source, target: summarize(source, target, *PLANS[target.name])) for name in PLANS}
+    of_modules = {'controls.csv': ('controls.csv', controls.summarize), 'neighbours.csv': ('neighbours.csv', controls.summarize_neighbours),
+                'poses_by_time.csv': ('poses_by_time.csv', ways.summarize), 'orders.csv': ('fixed_points.csv', orders.summarize)}
+    made = {name: how for name, how in {**plans, **OTHERS, **of_modules}.items() if (pairs / how[0]).is_file()}
     before = {name: text_of(out / name) for name in made}
     for name, (source, make) in made.items():
         make(pairs / source, out / name)
     if sys.argv[3:]:  # the networks' own counts are entered by hand
-        remember(out / 'runs.csv', {name: run for name in made if text_of(out / name) != before[name] and name != 'learned.csv'})
+        remember(out / 'runs.csv', {name: [sys.argv[3], today(), sys.argv[4]] for name in made if text_of(out / name) != before[name] and name != 'learned.csv'})
     return 0
 
 

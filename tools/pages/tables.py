@@ -11,8 +11,10 @@ import pathlib
 import re
 
 import controls
+import orders
 import questions
 import summaries
+import ways
 from summaries import score, table
 from timings import RESULTS, chains, describing, matching, rows, same_points, speed_figures, step_by_step
 
@@ -60,42 +62,11 @@ def ratios():
     return table(['images', 'points', 'pairs', *('**%s**' % ratio if ratio == '0.92' else ratio for ratio in shown), '0.92 against 0.9'], lines)
 
 
-@functools.lru_cache(None)
-def poses_by_time():
-    """Rows by detector, number of points and kind of matches: `plain` by the better of PoseLib's thresholds, and `refined` here."""
-    found = {}
-    for row in rows('poses_by_time.csv'):
-        ways, way = found.setdefault((row['detector'], int(row['points']), row['matches']), {}), 'plain' if 'PoseLib' in row['estimator'] else 'refined'
-        if way not in ways or float(row['at_5']) > float(ways[way]['at_5']):
-            ways[way] = row
-    return dict(sorted(found.items(), key=lambda item: float(item[1]['refined']['at_5'])))
-
-
-def poses_and_time():
-    """Poses by each detector over processor time, on the same pairs."""
-    lines = []
-    for (detector, points, matches), ways in reversed(poses_by_time().items()):
-        lines.append([detector, str(points), matches])
-        for row in (ways['plain'], ways['refined']):
-            lines[-1] += [score(row), '%.2f' % float(row['at_10']), '%.0f' % float(row['milliseconds'])]
-    return table(['points of', 'points', 'matches', 'as they are, PoseLib', 'up to 10°', 'ms a pair', 'refined here', 'up to 10°', 'ms a pair'], lines)
-
-
-def other_run(*rows):
-    """A note if rows are from different runs."""
-    return ', timed in different runs' if len({row['commit'] for row in rows}) > 1 else ''
-
-
-def learned_figures():
-    """Scores of ALIKED with LightGlue and of the chain by number of points, and the ratio of the times of ALIKED's 1000 and the chain's 4000."""
-    names, figures, found = {('ALIKED-n16', 'LightGlue'): 'aliked', ('recommended chain', 'mutual, a ratio'): 'chain'}, {}, {}
-    for (detector, points, matches), ways in poses_by_time().items():
-        if (detector, matches) in names:
-            name = '%s_%d' % (names[detector, matches], points)
-            found[name] = ways['refined']
-            figures.update({name + '_' + way: '%.2f' % float(row['at_5']) for way, row in ways.items()})
-    few, many = found['aliked_1000'], found['chain_4000']
-    return {**figures, 'times': '%.0f' % (float(few['milliseconds']) / float(many['milliseconds'])), 'pairs': few['pairs'], 'runs': other_run(few, many)}
+def ratio_figures():
+    """Per cent of matches that a ratio of .92 gives more than .9: least and most of all sets and numbers of points."""
+    found = summaries.by(rows('ratios.csv'), 'place', 'points', 'ratio')
+    more = [100 * float(row['matches']) / float(found[place, points, '0.9']['matches']) - 100 for (place, points, ratio), row in found.items() if ratio == '0.92']
+    return {'more': '%.0f to %.0f' % (min(more), max(more))}
 
 
 def paper(question):
@@ -160,24 +131,23 @@ SEEN = 'Herz-Jesus-P8', 'entry-P10', 'castle-P30'  # scenes that rules of matchi
 
 
 def located_photographs():
-    """Images of Strecha's scenes near their places, by method, as they are and relit: within 5 cm, within 25 cm, and within 5 cm for each scene
-    that nothing was chosen on."""
+    """Images of Strecha's scenes near their places, by method, as they are and relit: within 5 cm, within 25 cm, and within 5 cm in the scenes
+    that nothing was chosen on, which come first."""
     found = [row for row in json.loads((ROOT / 'doc/localization/results.json').read_text())['rows'] if row['light'] in ('as they are', 'relit')]
     unseen = [place for place in dict.fromkeys(row['place'] for row in found) if place not in SEEN]
 
     def near(method, limit, places):
         for light in ('as they are', 'relit'):
-            of = [row for row in found if (row['method'], row['light']) == (method, light) and (not places or row['place'] in places)]
+            of = [row for row in found if (row['method'], row['light']) == (method, light) and row['place'] in places]
             yield '%d of %d' % tuple(sum(row[column] for row in of) for column in (limit, 'images'))
-    lines = [[method, *near(method, 'within_5', ()), *near(method, 'within_25', ()), *itertools.chain(*(near(method, 'within_5', [place]) for place in unseen))]
-             for method in dict.fromkeys(row['method'] for row in found)]
-    return unseen, lines
+    every = [('within_5', (*SEEN, *unseen)), ('within_25', (*SEEN, *unseen)), ('within_5', unseen)]
+    return unseen, {method: [cell for what in every for cell in near(method, *what)] for method in dict.fromkeys(row['method'] for row in found)}
 
 
 def localization_photographs():
     unseen, lines = located_photographs()
-    heads = ['within 5 cm and 0.5°', 'within 25 cm', *('%s, 5 cm' % place for place in unseen)]
-    return table(['', *(head + light for head in heads for light in ('', ', relit'))], lines)
+    heads = ['within 5 cm and 0.5°', 'within 25 cm', '%s: 5 cm' % ', '.join(unseen)]
+    return table(['', *(head + light for head in heads for light in ('', ', relit'))], [[method, *cells] for method, cells in lines.items()])
 
 
 def localization_lights(file):
@@ -186,37 +156,9 @@ def localization_lights(file):
         [*line[:3], '%s of %s' % (line[4], line[3]), *line[5:]] for line in setups(('map', 'setup', 'light'), file))]
 
 
-ONE, TWO, THREE = ('IIB x', 'IIB y', 'IIB i', 'IIB o'), ('IIB x+y', 'IIB o+i'), ('IIB x+y+i', 'IIB x+y+o')
-# Statement: groups, each of whose best scores higher than the best of the next.
-ORDERS = {'x+y above every single channel': (('IIB x+y',), ONE), '4 channels above 3 above 2 above 1': (('IIB',), THREE, TWO, ONE),
-          'QUARTILE above MEAN': (('IIB quartile',), ('IIB',)), 'overlap above none': (('IIB overlap',), ('IIB',)),
-          'SORT below MEAN': (('IIB',), ('IIB sort',)),
-          'MAX below MEAN': (('IIB',), ('IIB max',)), 'MIN below MEAN': (('IIB',), ('IIB min',)),
-          'g5 above g4 above g3 above g2': (('IIB g5',), ('IIB',), ('IIB g3',), ('IIB g2',))}
-
-
-GROUPS = {'natural': '%s pairs of photographs', 'light': '%s of them, of other sets', 'rendered': '%s rendered pairs'}
-
-
 def paper_orders():
-    """Whether the orders of the paper's tables hold for our figures, in each group of pairs. Differences below .01 count as equal."""
-    found = {place: summaries.by(rows('fixed_points.csv'), 'configuration', place=place) for place in GROUPS}
-
-    def line(statement, column, groups, margin=0):
-        cells = []
-        for scores in found.values():
-            values = {name: float(row[column]) for name, row in scores.items()}
-            chosen = [max((name for name in members if name in values), key=values.get) for members in groups]
-            steps = [values[a] - values[b] for a, b in zip(chosen, chosen[1:])]
-            higher = [step >= max(margin, .01) for step in steps]
-            holds = 'yes' if all(higher) else '**no**' if margin or min(steps) <= -.01 else 'in part' if any(higher) else 'level'
-            signs = ['', *((', ' if each or holds != 'in part' else ' level with ') for each in higher)]
-            cells.append('%s: %s' % (holds, ''.join('%s%s %.3f' % (sign, name.replace('IIB ', ''), values[name]) for sign, name in zip(signs, chosen))))
-        return [statement, *cells]
-    others = [row['configuration'] for row in PAPER if not row['configuration'].startswith('IIB')]
-    heads = [text % found[place]['IIB']['pairs'] for place, text in GROUPS.items()]
-    return table(['holds', *heads], [*(line(statement, 'recall', groups) for statement, groups in ORDERS.items()),
-                                               line('0.1 precision above every other descriptor', 'precision', [['IIB'], others], .1)])
+    """Whether the orders of the paper's tables hold for our figures."""
+    return orders.table([row['configuration'] for row in PAPER if not row['configuration'].startswith('IIB')])
 
 
 def estimates():
@@ -317,11 +259,11 @@ def photograph_figures():
     def joined(row):
         largest, *others = (int(n) for n in (row['registered'].split()[0] + ' ' + row['others']).split())
         return '%d in %d parts, %d in the largest' % (largest + sum(others), 1 + len(others), largest) if others else '%d in one' % largest
-    near = {line[0]: line[1:] for line in located_photographs()[1]}
+    near = located_photographs()[1]
     close, shared = next(row['close'] for row in found if row['method'] == 'chain and SIFT').split(' of ')
     figures = {'images': statue['chain']['registered'].split()[-1], 'date': run['date'], 'disagree': '%d of %s' % (int(shared) - int(close), shared)}
-    for name, method in (('chain', 'recommended chain'), ('sift', 'SIFT, normalized image')):
-        figures.update(zip((name + '_located', name + '_relit', name + '_near', name + '_near_relit'), near[method]))  # within 5 cm and 25 cm
+    for name, method in (('chain', 'recommended chain'), ('sift', 'SIFT, normalized image, refined')):
+        figures.update(zip((name + end for end in ('_located', '_relit', '_near', '_near_relit', '_unseen', '_unseen_relit')), near[method]))
     points = {(row['scene'], row['method']): int(row['points']) for row in found if row['points']}
     for method in ('chain', 'SIFT', 'normalized'):
         kept = [round(100 * count / points[scene[:-len(' relit')], name]) for (scene, name), count in points.items() if name == method and scene.endswith(' relit')]
@@ -444,20 +386,20 @@ def first_patch():
 
 
 def run_figures():
-    """Commit, date and machine of each file, by its name."""
-    return {row['file'][:-len('.csv')]: '%s on %s (%s)' % (row['commit'].replace(';', ' and '), row['date'], row['machine'])
-            for row in rows('runs.csv') if re.fullmatch(r'\w+\.csv', row['file'])}
+    """Commit, date and machine of each file, by its name without folder and suffix."""
+    return {re.sub(r'.*/|\.\w+', '', row['file']).replace(', ', '_'): '%s on %s (%s)' % (row['commit'].replace(';', ' and '), row['date'], row['machine'])
+            for row in rows('runs.csv')}
 
 
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, own_descriptors, equal_sizes, presets, ratios, photographs, describing, chains, same_points, matching, step_by_step,
-    matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, poses_and_time,
+    matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, ways.poses_and_time,
     detected_points, sure, uncertainty, night, first_patch)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
 ALL.update({'photographs_of_many': functools.partial(photographs, False), 'views_affine': functools.partial(by_change, 'some photographs', ('matchViews', 'AffineFeature')),
             'views': functools.partial(by_change, 'photographs', ('matchViews', 'upright chain', 'ORB', 'SIFT')), 'pose_all': controls.table, 'pose_kinds': controls.kinds, 'pose_ratios': controls.by_ratio, 'pose_noise': controls.noise,
             'pose_neighbours': controls.neighbours, 'pose_cause': controls.cause, 'wrong_poses': controls.wrong, **questions.ALL})
-FIGURES = {'learned': learned_figures, 'controls': controls.figures, 'poses': pose_figures, 'photographs': photograph_figures, 'views': view_figures, 'sure': sure_figures,
+FIGURES = {'learned': ways.figures, 'controls': controls.figures, 'ratios': ratio_figures, 'poses': pose_figures, 'photographs': photograph_figures, 'views': view_figures, 'sure': sure_figures,
            'speed': speed_figures, 'rotation': rotation_figures, 'bytes': byte_figures, 'questions': questions.figures, 'runs': run_figures}

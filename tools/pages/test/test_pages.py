@@ -10,10 +10,12 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import charts  # noqa: E402
 import controls  # noqa: E402
 import localization  # noqa: E402
+import orders  # noqa: E402
 import speed  # noqa: E402
 import summaries  # noqa: E402
 import tables  # noqa: E402
 import timings  # noqa: E402
+import ways  # noqa: E402
 
 
 def summarized(lines, make, *arguments):
@@ -72,21 +74,17 @@ class Figures(unittest.TestCase):
                          {'same light': ('2', .875, .75, .5, .5), 'other light': ('1', .9, .8, .6, 0), 'list pairs.txt': ('1', .25, 0, 0, 0)})
         self.assertEqual((found['same light']['low'], found['same light']['high']), ('0', '1'))
 
-    def test_ways_to_a_pose_are_measured_one_by_one(self):
-        heads = 'set,sequence,target,detector,points,matches,estimator,error,milliseconds\n'
-        with tempfile.TemporaryDirectory() as folder:
-            source, target = pathlib.Path(folder, 'in.csv'), pathlib.Path(folder, 'poses_by_time.csv')
-            for commit, line in (('a', 'facade_33,night,0-1,ORB,1000,m,e,0,7'), ('z', 'facade_33,night,0-1,ORB,1000,m,e,0,7'), ('b', 'facade_33,night,0-1,AKAZE,1000,m,e,5,9'), ('c', 'facade_33,night,0-1,ORB,1000,m,e,5,8')):
-                source.write_text(heads + line)
-                summaries.summarize(source, target, *summaries.PLANS['poses_by_time.csv'], commit)
-            found = summaries.read(target)
-            self.assertEqual([(row['detector'], row['milliseconds'], row['at_5'], row['commit']) for row in found], [('AKAZE', '9', '0', 'b'), ('ORB', '8', '0', 'c')])
-            self.assertIn('different runs', tables.other_run(*found))
-            self.assertEqual(tables.other_run(found[0], found[0]), '')
+    def test_ways_to_a_pose_gain_on_the_same_pairs(self):
+        heads = 'set,sequence,target,detector,points,matches,estimator,error,milliseconds'
+        errors = {('recommended chain', 1000): (0, 5), ('recommended chain', 4000): (0, 0), ('ORB', 1000): (5, 0), ('ORB', 3000): (2.5, 5)}
+        lines = ['%s,night,0-1,%s,%d,m,"%s",%g,7' % (place, *way, ways.REFINED, error) for way, of in errors.items() for place, error in zip(('yard_2', 'hall_2'), of)]
+        found = summaries.by(summarized([heads, *lines, 'yard_1,night,0-1,ORB,1000,m,"%s",0,7' % ways.REFINED], ways.summarize), 'detector', 'points')
+        self.assertEqual({key: (row['pairs'], row['at_5'], row['gain'], row['over_most'], row['over_most_low'], row['over_most_high']) for key, row in found.items() if key[0] == 'ORB'},
+                         {('ORB', '1000'): ('2', '0.5', '0', '-0.5', '-1', '0'), ('ORB', '3000'): ('2', '0.25', '-0.75', '-0.75', '-1', '-0.5')})
 
     def test_a_detector_that_nobody_placed_is_drawn(self):
         row = {'milliseconds': '9', 'at_5': '.5', 'low': '.4', 'high': '.6'}
-        with unittest.mock.patch.object(tables, 'poses_by_time', lambda: {('new one', points, 'm'): {'plain': row, 'refined': row} for points in (9, 8)}):
+        with unittest.mock.patch.object(ways, 'found', lambda: {('new one', points, 'm'): {'plain': row, 'refined': row} for points in (9, 8)}):
             self.assertIn('<!-- 8, 9 -->', charts.cost())  # the text of a line in matplotlib's SVG
 
     def test_intervals(self):
@@ -119,6 +117,24 @@ class Figures(unittest.TestCase):
         heads = 'set', 'target', 'detector', 'descriptor', 'kind', 'correct', 'sequence'
         found = summarized([heads, *rows, ('graf', 1, 'ORB', 'ORB', 'viewpoint', 9, 's')], summaries.summarize_gains)
         self.assertEqual([','.join(row.values()) for row in found], ['light,ORB,1,1,2.0000,2.0000,2.0000', 'natural,ORB,2,2,1.2500,1.0000,2.0000'])
+
+    def test_orders_are_of_the_same_pairs(self):
+        recalls = {'IIB': (.5, .7, .6), 'IIB sort': (.4, .5, .4), 'IIB max': (.5, .9, .5), 'IIB overlap': (.4, .6, .5)}
+        lines = ['%s,%s,%d,light,%s,9,0.9,%g' % (data, scene, target, name, recall) for data in ('iib_demo', 'lights') for name in
+                 {name for groups in orders.ORDERS.values() for group in groups for name in group}
+                 for scene, target, recall in zip(('s', 's', 't'), (0, 1, 0), recalls.get(name, (.1, .2, .3)))]
+        found = summarized(['set,sequence,target,kind,configuration,bytes,precision,recall', *lines], orders.summarize)
+        steps = summaries.by(found, 'more', 'less', place='light')
+        self.assertEqual([','.join(list(steps['IIB', name].values())[3:]) for name in ('IIB sort', 'IIB max')], ['3,2,0.1667,0.15,0.2', '3,2,-0.03333,-0.1,0.1'])
+        means = [{'place': place, 'configuration': name, 'recall': summaries.mean(recalls.get(name, (.1, .2, .3))), 'precision': .5 if name == 'ORB' else .595, 'pairs': '3'}
+                 for place in orders.GROUPS for name in {'ORB', *(row['more'] for row in found), *(row['less'] for row in found)}]
+        with unittest.mock.patch.object(timings, 'rows', {'fixed_points.csv': means, 'orders.csv': found}.get):
+            lines = dict(line[2:].split(' | ')[:2] for line in orders.table(['ORB']).splitlines()[2:])
+        self.assertEqual({name: lines[name].partition(':')[0] for name in ('SORT below MEAN', 'MAX below MEAN', 'overlap above none', 'g5 above g4 above g3 above g2',
+                                                                           '0.1 precision above every other descriptor')},
+                         {'SORT below MEAN': 'yes', 'MAX below MEAN': 'level', 'overlap above none': '**no**', 'g5 above g4 above g3 above g2': '**no**',
+                          '0.1 precision above every other descriptor': '**no**'})
+        self.assertEqual(lines['overlap above none'], '**no**: overlap above IIB by -0.100 (-0.100 to -0.100)')
 
     def test_uncertainty(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -162,18 +178,6 @@ class Figures(unittest.TestCase):
         self.assertEqual([found for _, found in localization.worst({'rows': rows, 'unknown': (3, 200)})],
                          ['100 %', '100 %', '85 %', '100 %', localization.share(3, 200)])
         self.assertEqual([localization.share(20, 20), localization.share(0, 10)], ['100 % (84 to 100)', '0 % (0 to 28)'])
-
-    def test_less_than_a_hundredth_is_no_order(self):
-        recalls = {'IIB': .505, 'IIB quartile': .49, 'IIB overlap': .515, 'ORB': .5, 'IIB g5': .515, 'IIB g3': .5, 'IIB g2': .4}
-        names = {'ORB'}.union(*(group for groups in tables.ORDERS.values() for group in groups))
-        rows = [{'place': place, 'configuration': name, 'recall': recalls.get(name, .5), 'precision': .5 if name == 'ORB' else .595, 'pairs': '4'}
-                for place in tables.GROUPS for name in names]
-        with unittest.mock.patch.object(tables, 'rows', lambda file: rows):
-            found = dict(line.split(' | ')[:2] for line in tables.paper_orders().splitlines()[2:])
-        self.assertEqual([found['| ' + order].partition(':')[0] for order in ('QUARTILE above MEAN', 'overlap above none', 'SORT below MEAN',
-                                                                              '0.1 precision above every other descriptor')],
-                         ['**no**', 'yes', 'level', '**no**'])
-        self.assertEqual(found['| g5 above g4 above g3 above g2'], 'in part: g5 0.515, IIB 0.505 level with g3 0.500, g2 0.400')
 
     def test_each_file_is_known_by_the_run_that_made_its_rows(self):
         heads = 'reference,target,detector,descriptor,x,y,target_x,target_y,correct\n'
