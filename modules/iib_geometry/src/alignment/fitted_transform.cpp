@@ -104,6 +104,17 @@ FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const Ma
     agree = within(limit, fit.squared);
 }
 
+FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const FittedTransform& richer)
+    : model(kind), problem(points.reference, points.image, kind), limit(richer.limit)
+{
+    const double roughly = 1e-4;
+    fit.model = simplified(richer.fit.model, kind);
+    fit.scale = richer.fit.scale;
+    polish(problem, Loss{fit.scale}, roughly, fit.model);
+    problem.squaredErrors(fit.model, fit.squared);
+    agree = within(limit, fit.squared);
+}
+
 bool FittedTransform::isSignificant(const Evidence& evidence) const
 {
     const Verdict& verdict = evidence.verdict;
@@ -188,8 +199,7 @@ bool isOfAnotherPart(const FittedTransform& richer, const FittedTransform& simpl
 int simplestModel(const FittedTransform& fitted, const AlignedPoints& points)
 {
     int model = ALIGN_TRANSLATION;
-    while (model < fitted.model &&
-            gainOf(fitted, FittedTransform(points, model, fitted.transform(), LEAST_SCALE)) > NEEDED_GAIN)
+    while (model < fitted.model && gainOf(fitted, FittedTransform(points, model, fitted)) > NEEDED_GAIN)
         model++;
     return model;
 }

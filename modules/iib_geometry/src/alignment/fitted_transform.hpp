@@ -40,6 +40,9 @@ struct FittedTransform
     @param scale of the first fit, working pixels; the matches' own scale is estimated from there. */
     FittedTransform(const AlignedPoints& points, int model, const Matx33d& from, double scale);
 
+    //! A transform with less freedom, fitted from a richer one and under its scale.
+    FittedTransform(const AlignedPoints& points, int model, const FittedTransform& richer);
+
     bool exists() const { return !fit.squared.empty(); }
     int count() const { return (int)std::count(agree.begin(), agree.end(), true); }
     Matx33d transform() const { return problem.inPixels(fit.model); }
