@@ -11,9 +11,8 @@ namespace {
 
 const double LEAST_SCALE = .1, MOST_SCALE = 1000;  // pixels
 const double RANK = 1e-13;                         // of covariances in double precision
-// Variance of the direction over the one that matches show: chosen on rendered places.
-const double OF_DIRECTION = 1.3;
-const double ONE_DIRECTION = 1;  // radians: of poses more apart, t may have any
+const double OF_DIRECTION = 1.3;                   // its variance over the one that matches show
+const double ONE_DIRECTION = 1;                    // radians: of poses more apart, t may have any
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {
@@ -95,7 +94,10 @@ PoseErrors estimateErrors(
     around.model = fit.model;
     around.scale = fit.errorScale;
     PoseErrors errors;
-    errors.covariance = covarianceOf(problem.subset(fit.used), around, parts, LARGEST_DEVIATION);
+    const double deviation = std::sqrt(OF_DIRECTION);
+    const auto scales = Square<EpipolarProblem::Step>::diag({1, 1, 1, deviation, deviation});
+    errors.covariance =
+            scales * covarianceOf(problem.subset(fit.used), around, parts, LARGEST_DEVIATION) * scales;
     const double limit = 1.5 * (fit.errorScale > LEAST_SCALE ? fit.errorScale
                                                              : scaleWithin(fit.squared, 3 * LEAST_SCALE,
                                                                        problem.parameters(), LEAST_NOISE));
@@ -129,9 +131,6 @@ PoseErrors estimateErrors(
         if (norm(Vec2d(step.val + 3)) > ONE_DIRECTION)
             errors.covariance += anyDirection;
     }
-    const double deviation = std::sqrt(OF_DIRECTION);
-    const auto scales = Square<EpipolarProblem::Step>::diag({1, 1, 1, deviation, deviation});
-    errors.covariance = scales * errors.covariance * scales;
     errors.covariance = limited(errors.covariance, LARGEST_DEVIATION, RANK);
     return errors;
 }
