@@ -166,8 +166,8 @@ Judgement judge(
                        "a transform: take images that share more",
                         100 * overlap, fitted.count()));
     if (isSmall)
-        return refused(format("the images agree in small parts alone, with %d matches over %.0f %% of what "
-                              "both could show: too little to tell a place from a logo or a caption",
+        return refused(format("the images agree in small parts alone, with %d matches over %.0f %% of an "
+                              "image: too little to tell a place from a logo or a caption",
                 fitted.count(), 100 * std::min(spread.area, spread.whole)));
     if (isUncertain)
         return refused(

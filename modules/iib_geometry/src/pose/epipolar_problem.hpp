@@ -25,8 +25,8 @@ public:
     int sampleSize() const { return 5; }
     int parameters() const { return 5; }
 
-    /** Of these matches, those that at least two of the others move like, at less than a tenth of the points' span from them: right
-    matches have such neighbours, wrong ones hardly any. */
+    /** Matches among these that move like at least two others, at less than a tenth of the points' span from them. Right matches have such
+    neighbours, wrong ones hardly any. At most 1000 are looked at. */
     std::vector<int> alikeTheirNeighbours(const std::vector<int>& matches) const;
 
     //! The poses that see the sample in front of both cameras.

@@ -9,32 +9,33 @@ namespace {
 typedef std::vector<double> Errors;
 
 const int THRESHOLDS = 7;
-const double FIRST_THRESHOLD = 1.4, LAST_THRESHOLD = 12;  // scales; misfit() ends at 12 times its first
+const double FIRST_THRESHOLD = 1.4;   // scales
+const double RANGE = 12;              // of the thresholds: the last one over the first
+const double FARTHEST_AGREEING = 12;  // scales: of a match that may agree with a pose
 const double UNSURE = 4;  // times smaller or larger than a scale that errors show, the right one may be
 const double FINELY = 1e-9, ROUGHLY = 1e-3;  // by how much less of its loss a pose is polished
 const int FEWEST = 100, FEW_TRIALS = 1000, MANY_TRIALS = 500, MOST_TRIALS = 12000;
-const double MISSED = 1e-4;         // probability that no sample was of right matches alone
 const int ROUNDS = 3;               // of samples from what agrees with the best pose,
 const double BETTER = .99;          // while its sum falls to less than this of it
 const double MOST_OF_REFINED = .6;  // pixels: matches that are not refined have more
 const double WIDER = 4;             // one scale that is tried over the one before
 const int FEW = 30;                 // matches: all of them count
+const int MANY = 60;                // matches: a pose cannot be fitted to most of them closer than they are
 
-/** The first of the thresholds by which poses are compared.
-@param scale given by the caller, or else shown by the errors of a pose that may be wrong. */
+/** The first of the thresholds by which poses are compared. Errors of a pose that may be wrong show too large a scale, so many matches are also compared
+by smaller thresholds. Among few matches these would prefer a pose that is fitted closely to some.
+@param given whether the caller gave the scale. */
 double firstThreshold(const EpipolarProblem& problem, bool given, double scale)
 {
-    const bool isSure =
-            given || problem.size() < 2 * FEW;  // a pose can be fitted to few matches as closely as one likes
-    return isSure ? FIRST_THRESHOLD * scale : std::max(REFINED, scale / UNSURE);
+    return given || problem.size() < MANY ? FIRST_THRESHOLD * scale : std::max(REFINED, scale / UNSURE);
 }
 
-//! The sum of the squared errors, cut off at thresholds from the first one to one that is LAST_THRESHOLD times as far.
+//! The sum of the squared errors, cut off at thresholds from the first one to one that is RANGE times as far.
 double misfit(const Errors& squared, double first, const Errors& weights)
 {
     double perThreshold2[THRESHOLDS], sum = 0;
     for (int k = 0; k < THRESHOLDS; k++)
-        perThreshold2[k] = 1 / square(first * std::pow(LAST_THRESHOLD, k / (THRESHOLDS - 1.)));
+        perThreshold2[k] = 1 / square(first * std::pow(RANGE, k / (THRESHOLDS - 1.)));
     for (size_t i = 0; i < squared.size(); i++)
     {
         double each = 0;
@@ -88,11 +89,11 @@ PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double uni
         // Few of the samples were right. Of what agrees with the best pose so far, many are.
         std::vector<int> agree;
         for (int i = 0; i < problem.size(); i++)
-            if (candidates[0].squared[i] < square(LAST_THRESHOLD * unit))
+            if (candidates[0].squared[i] < square(FARTHEST_AGREEING * unit))
                 agree.push_back(i);
         const Loss wide{1.2 * unit, 50};  // up to eight and a half scales
         const double before = candidates[0].sum;
-        add(Search<EpipolarProblem>(problem, wide, wide, FEWEST, MISSED, agree).upTo(FEWEST));
+        add(Search<EpipolarProblem>(problem, wide, wide, FEWEST, agree).upTo(FEWEST));
         if (candidates[0].sum > BETTER * before)
             break;
     }
@@ -106,7 +107,7 @@ PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double uni
     for (size_t i = 1; i < candidates.size(); i++)
         fit.others.push_back(candidates[i].pose);
     std::vector<double> limits;
-    for (double scales : {1.5, 3., 6., 12.})
+    for (double scales : {1.5, 3., 6., FARTHEST_AGREEING})
         limits.push_back(std::min(scales * unit, farthest));
     const Matx33d essential = essentialOf(fit.model);
     const Errors wrong = errorsOfWrongMatches(verdict,
@@ -124,7 +125,7 @@ PoseFit searchPose(
     PoseFit best;
     int samples = 0;
     const std::vector<int> likely = problem.alikeTheirNeighbours(verdict.firstOfPlaces());
-    const double farthest = scale > 0 ? LAST_THRESHOLD * scale : .75 * problem.mostScale();
+    const double farthest = scale > 0 ? FARTHEST_AGREEING * scale : .75 * problem.mostScale();
     const auto isCertain = [&] { return best.logFalseAlarms < Verdict::CERTAIN; };
     const auto isBetter = [&](const PoseFit& fit) {
         if (!isCertain() || fit.logFalseAlarms > Verdict::CERTAIN)
@@ -133,7 +134,7 @@ PoseFit searchPose(
         return misfit(fit.squared, first, weights) < misfit(best.squared, first, weights);
     };
     const auto tryBy = [&](double unit, int fewTrials, int mostTrials) {
-        Search<EpipolarProblem> search(problem, Loss{unit}, Loss{2 * unit}, FEWEST, MISSED, {}, likely);
+        Search<EpipolarProblem> search(problem, Loss{unit}, Loss{2 * unit}, FEWEST, {}, likely);
         for (int trials : {fewTrials, mostTrials})
         {
             PoseFit fit = fitBy(problem, verdict, unit, firstThreshold(problem, scale > 0, unit), farthest,

@@ -6,8 +6,6 @@
 
 namespace cv::iib {
 
-const double REFINED = .25;  // least scale by which matches count as agreeing, pixels
-
 //! A pose that matches agree with.
 struct PoseFit : Fit<EpipolarProblem>
 {

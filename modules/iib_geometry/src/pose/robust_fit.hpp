@@ -21,7 +21,9 @@ namespace cv::iib {
     linearize(model, limit, rows)      the rows of matches whose squared error is below the limit
     Model moved(model, step) */
 
-const double FARTHEST = 9;            // three scales
+const double REFINED = .25;  // pixels: least scale by which matches count as agreeing, that of refined ones
+const double MISSED = 1e-4;  // probability that no sample was of right matches alone
+const double FARTHEST = 9;   // three scales
 const double FARTHEST_OF_CHOICE = 4;  // scales at which squared errors are cut off when a model is chosen
 
 /** Of a match with squared error r^2, Cauchy's log(1 + r^2 / scale^2), and from `farthest` scales^2 on that of `farthest`: by how far a
@@ -129,13 +131,11 @@ public:
     typedef typename Problem::Model Model;
 
     /** @param fewest samples that are tried, however many matches agree.
-    @param missed probability that no sample was of right matches alone.
     @param pool matches that samples are taken from; empty: all.
     @param likely matches that every other sample is taken from. */
-    Search(const Problem& problem, const Loss& by, const Loss& wider, int fewest, double missed,
+    Search(const Problem& problem, const Loss& by, const Loss& wider, int fewest,
             const std::vector<int>& pool = {}, const std::vector<int>& likely = {})
-        : problem_(problem), by_(by), wider_(wider), fewest_(fewest), missed_(missed), pools_{pool},
-          random_(0x5eed)
+        : problem_(problem), by_(by), wider_(wider), fewest_(fewest), pools_{pool}, random_(0x5eed)
     {
         if (pool.empty())
             for (int i = 0; i < problem.size(); i++)
@@ -238,7 +238,7 @@ private:
         std::vector<double> squared;
         problem_.squaredErrors(model, squared);
         const double inside = FARTHEST * square(by_.scale);
-        // Fischler and Bolles (1981): samples until one in 1 / missed searches had none of right matches alone.
+        // Fischler and Bolles (1981): samples until a share of MISSED searches had none of right matches alone.
         double right = 0;
         for (const std::vector<int>& pool : pools_)
         {
@@ -246,7 +246,7 @@ private:
                     std::count_if(pool.begin(), pool.end(), [&](int i) { return squared[i] < inside; });
             right += std::pow((double)near / pool.size(), problem_.sampleSize()) / pools_.size();
         }
-        wanted_ = right > 0 ? std::log(missed_) / std::log1p(-std::min(right, .999))
+        wanted_ = right > 0 ? std::log(MISSED) / std::log1p(-std::min(right, .999))
                             : std::numeric_limits<double>::max();
         wanted_ = std::max<double>(fewest_, wanted_);
     }
@@ -254,7 +254,6 @@ private:
     const Problem& problem_;
     const Loss by_, wider_;
     const int fewest_;
-    const double missed_;
     std::vector<std::vector<int>> pools_;
     RNG random_;
     std::vector<Proposal> proposals_;
@@ -311,24 +310,24 @@ inline bool findScale(const std::vector<double>& squared, double distance, int p
 }
 
 /** The model that most matches agree with. The same in every run.
-@param scale of Cauchy's loss, pixels; 0: the errors tell it. Then scales from that of refined matches upwards are tried, each twice
-    the one before, with few samples, until most errors are far below it.
-@param mostScale by which models are looked for, pixels. */
-template <class Problem> Fit<Problem> robustFit(const Problem& problem, double scale, double mostScale = .5)
+
+The scale of refined matches is tried with few samples, and twice that scale if most errors are not far below it. */
+template <class Problem> Fit<Problem> robustFit(const Problem& problem)
 {
-    const double finely = 1e-9, refined = .25, missed = 1e-4;
+    const double finely = 1e-9;
     const int fewest = 150, fewTrials = 1000, mostTrials = 10000;
     Fit<Problem> fit;
-    const auto choose = [&](Search<Problem>& search, double narrow, int trials) {
+    // Takes the best model of a search; returns whether its errors show a scale.
+    const auto choose = [&](Search<Problem>& search, double scale, int trials) {
         fit.squared.clear();
-        double least = std::numeric_limits<double>::infinity();
+        double least = std::numeric_limits<double>::infinity(), shown = scale;
         std::vector<double> squared;
         for (const typename Problem::Model& model : search.upTo(trials))
         {
             double sum = 0;
             problem.squaredErrors(model, squared);
             for (double error : squared)
-                sum += std::min(error, square(FARTHEST_OF_CHOICE * narrow));
+                sum += std::min(error, square(FARTHEST_OF_CHOICE * scale));
             if (sum >= least)
                 continue;
             least = sum;
@@ -336,30 +335,22 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
             fit.squared.swap(squared);
         }
         fit.samples = search.samples();
+        const bool shows = findScale(fit.squared, FARTHEST_OF_CHOICE * scale, problem.parameters(), shown);
+        fit.scale = shows ? shown : scale;
+        return shows;
     };
-    double narrow = scale > 0 ? scale : refined, estimated = scale;
-    bool found = scale > 0;
-    for (; !found && narrow <= mostScale; narrow *= found ? 1 : 2)
+    for (double scale : {REFINED, 2 * REFINED})
     {
-        Search<Problem> search(problem, Loss{narrow}, Loss{2 * narrow}, fewest, missed);
-        choose(search, narrow, fewTrials);
-        found = findScale(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), estimated);
-        if ((found || narrow == 2 * refined) && search.wantsMore())
-            choose(search, narrow, mostTrials);
-    }
-    if (!found)
-        narrow = 2 * refined;
-    if (fit.squared.empty() || (!found && mostScale < narrow))
-    {
-        Search<Problem> search(problem, Loss{narrow}, Loss{2 * narrow}, fewest, missed);
-        choose(search, narrow, mostTrials);
+        Search<Problem> search(problem, Loss{scale}, Loss{2 * scale}, fewest);
+        const bool found = choose(search, scale, fewTrials);
+        if ((found || scale > REFINED) && search.wantsMore())
+            choose(search, scale, mostTrials);
+        if (found)
+            break;
     }
     if (fit.squared.empty())
         return fit;
-    if (scale == 0 && !findScale(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), estimated))
-        estimated = narrow;
-    fit.scale = estimated;
-    polish(problem, Loss{estimated}, finely, fit.model);
+    polish(problem, Loss{fit.scale}, finely, fit.model);
     finish(problem, fit);
     return fit;
 }
