@@ -8,7 +8,6 @@
 namespace cv::iib {
 namespace {
 
-const double LEAST_SCALE = .25;  // of the inliers' noise, working pixels
 /* Log likelihood that refutes a simpler model, per additional parameter and per inlier. True models gain up to 3.9 per parameter or .23 per inlier
 by noise and lens distortion; untrue ones with underestimated errors gain 5.3 and .29 (103 pairs under changed illumination, each model). */
 const double LEAST_GAIN = 4.5, LEAST_GAIN_OF_MATCH = .24;
@@ -68,8 +67,8 @@ const char* nameOf(int model)
 }
 
 FittedTransform::FittedTransform(const AlignedPoints& points, int kind)
-    : model(kind), problem(points.reference, points.image, kind), fit(robustFit(problem, 0)),
-      limit(3 * std::max(fit.scale, LEAST_SCALE)), agree(within(limit, fit.squared))
+    : model(kind), problem(points.reference, points.image, kind), fit(robustFit(problem)),
+      limit(3 * std::max(fit.scale, REFINED)), agree(within(limit, fit.squared))
 {
     agree.resize(problem.size());
 }

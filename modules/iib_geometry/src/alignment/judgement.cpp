@@ -165,8 +165,8 @@ Judgement judge(
                               "a transform: use images that overlap more",
                 100 * overlap, fitted.count()));
     if (isSmall)
-        return refused(format("the images agree only in small parts, with %d matches over %.0f %% of the "
-                              "overlap: too little to distinguish a place from a logo or a caption",
+        return refused(format("the images agree only in small parts, with %d matches over %.0f %% of an "
+                              "image: too little to distinguish a place from a logo or a caption",
                 fitted.count(), 100 * std::min(spread.area, spread.whole)));
     if (isUncertain)
         return refused(

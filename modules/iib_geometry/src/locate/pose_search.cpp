@@ -3,7 +3,6 @@
 #include "pose_search.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <set>
 
@@ -152,9 +151,10 @@ public:
         location_.reason = "";
         location_.inliers = keypointsOf(inliers_);
         location_.cameraFromWorld = frame_.toWorld(pose_);
-        const double centre = std::sqrt(OF_CENTRE), rotation = std::sqrt(OF_ROTATION);
-        const Matx66d scales = Matx66d::diag({centre, centre, centre, rotation, rotation, rotation});
-        location_.covariance = scales * frame_.toWorld(covariance_) * scales;
+        location_.covariance = OF_CENTRE * frame_.toWorld(covariance_);
+        for (int r = 3; r < 6; r++)  // cross terms stay: the rest is independent of the centre
+            for (int c = 3; c < 6; c++)
+                location_.covariance(r, c) *= OF_ROTATION / OF_CENTRE;
         for (const Match& m : inliers_)
             if (m.keypoint >= 0)
             {

@@ -89,7 +89,10 @@ std::vector<int> EpipolarProblem::alikeTheirNeighbours(const std::vector<int>& m
     const double unlike =
             .5;  // of the distance between two matches: largest difference of their displacements
     const int enough = 2;
-    std::vector<int> order = matches, counts(size());
+    const size_t most = 1000;  // matches: more take time
+    std::vector<int> order, counts(size());
+    for (size_t i = 0, step = (matches.size() + most - 1) / most; i < matches.size(); i += step)
+        order.push_back(matches[i]);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return first_[a].x < first_[b].x; });
     double top = std::numeric_limits<double>::infinity(), bottom = -top;
     for (int i : order)

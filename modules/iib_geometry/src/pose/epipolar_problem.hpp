@@ -25,8 +25,8 @@ public:
     int sampleSize() const { return 5; }
     int parameters() const { return 5; }
 
-    /** The matches with at least two neighbours that move alike; a neighbour is less than a tenth of the points' span away. Right
-    matches have such neighbours, wrong ones hardly any. */
+    /** Matches among these that move like at least two neighbours, which are less than a tenth of the points' span away. Right matches have
+    such neighbours, wrong ones hardly any. At most 1000 are compared. */
     std::vector<int> alikeTheirNeighbours(const std::vector<int>& matches) const;
 
     //! Keeps the poses for which the whole sample is in front of both cameras.

@@ -9,33 +9,33 @@ namespace {
 typedef std::vector<double> Errors;
 
 const int THRESHOLDS = 7;
-const double FIRST_THRESHOLD = 1.4,
-             LAST_THRESHOLD = 12;            // scales; in misfit(), LAST_THRESHOLD is a factor of the first
+const double FIRST_THRESHOLD = 1.4;          // scales
+const double RANGE = 12;                     // ratio of the last threshold to the first
+const double FARTHEST_AGREEING = 12;         // scales: largest error of a match to sample from
 const double UNSURE = 4;                     // factor by which an estimated scale may be wrong
 const double FINELY = 1e-9, ROUGHLY = 1e-3;  // polish's `enough`
 const int FEWEST = 100, FEW_TRIALS = 1000, MANY_TRIALS = 500, MOST_TRIALS = 12000;
-const double MISSED = 1e-4;         // accepted probability that every sample has a wrong match
 const int ROUNDS = 3;               // of sampling from the best pose's inliers, at most
 const double BETTER = .99;          // another round follows if the best sum falls below this share of it
 const double MOST_OF_REFINED = .6;  // pixels: largest scale of refined matches
 const double WIDER = 4;             // factor from one scale to the next
 const int FEW = 30;                 // matches: the final fit uses all if fewer agree
+const int MANY = 60;                // matches: no pose fits most of them closer than they are
 
-/** The first threshold for comparing poses.
-@param given whether the scale comes from the caller; else it was estimated from a pose that may be wrong. */
+/** The first threshold for comparing poses. A pose that may be wrong gives too large a scale, so many matches are also compared by smaller
+thresholds. Among few matches these would prefer a pose that fits some of them closely.
+@param given whether the scale comes from the caller. */
 double firstThreshold(const EpipolarProblem& problem, bool given, double scale)
 {
-    const bool isSure =
-            given || problem.size() < 2 * FEW;  // a small threshold is useless: poses fit few matches closely
-    return isSure ? FIRST_THRESHOLD * scale : std::max(REFINED, scale / UNSURE);
+    return given || problem.size() < MANY ? FIRST_THRESHOLD * scale : std::max(REFINED, scale / UNSURE);
 }
 
-//! The sum of the squared errors, cut off at thresholds from `first` to LAST_THRESHOLD times `first`.
+//! The sum of the squared errors, cut off at thresholds from `first` to RANGE times `first`.
 double misfit(const Errors& squared, double first, const Errors& weights)
 {
     double perThreshold2[THRESHOLDS], sum = 0;
     for (int k = 0; k < THRESHOLDS; k++)
-        perThreshold2[k] = 1 / square(first * std::pow(LAST_THRESHOLD, k / (THRESHOLDS - 1.)));
+        perThreshold2[k] = 1 / square(first * std::pow(RANGE, k / (THRESHOLDS - 1.)));
     for (size_t i = 0; i < squared.size(); i++)
     {
         double each = 0;
@@ -89,11 +89,11 @@ PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double uni
         // Few samples from all matches are free of wrong ones. Many are, if taken from the best pose's inliers.
         std::vector<int> agree;
         for (int i = 0; i < problem.size(); i++)
-            if (candidates[0].squared[i] < square(LAST_THRESHOLD * unit))
+            if (candidates[0].squared[i] < square(FARTHEST_AGREEING * unit))
                 agree.push_back(i);
         const Loss wide{1.2 * unit, 50};  // up to eight and a half scales
         const double before = candidates[0].sum;
-        add(Search<EpipolarProblem>(problem, wide, wide, FEWEST, MISSED, agree).upTo(FEWEST));
+        add(Search<EpipolarProblem>(problem, wide, wide, FEWEST, agree).upTo(FEWEST));
         if (candidates[0].sum > BETTER * before)
             break;
     }
@@ -107,7 +107,7 @@ PoseFit fitBy(const EpipolarProblem& problem, const Verdict& verdict, double uni
     for (size_t i = 1; i < candidates.size(); i++)
         fit.others.push_back(candidates[i].pose);
     std::vector<double> limits;
-    for (double scales : {1.5, 3., 6., 12.})
+    for (double scales : {1.5, 3., 6., FARTHEST_AGREEING})
         limits.push_back(std::min(scales * unit, farthest));
     const Matx33d essential = essentialOf(fit.model);
     const Errors wrong = errorsOfWrongMatches(verdict,
@@ -125,7 +125,7 @@ PoseFit searchPose(
     PoseFit best;
     int samples = 0;
     const std::vector<int> likely = problem.alikeTheirNeighbours(verdict.firstOfPlaces());
-    const double farthest = scale > 0 ? LAST_THRESHOLD * scale : .75 * problem.mostScale();
+    const double farthest = scale > 0 ? FARTHEST_AGREEING * scale : .75 * problem.mostScale();
     const auto isCertain = [&] { return best.logFalseAlarms < Verdict::CERTAIN; };
     const auto isBetter = [&](const PoseFit& fit) {
         if (!isCertain() || fit.logFalseAlarms > Verdict::CERTAIN)
@@ -134,7 +134,7 @@ PoseFit searchPose(
         return misfit(fit.squared, first, weights) < misfit(best.squared, first, weights);
     };
     const auto tryBy = [&](double unit, int fewTrials, int mostTrials) {
-        Search<EpipolarProblem> search(problem, Loss{unit}, Loss{2 * unit}, FEWEST, MISSED, {}, likely);
+        Search<EpipolarProblem> search(problem, Loss{unit}, Loss{2 * unit}, FEWEST, {}, likely);
         for (int trials : {fewTrials, mostTrials})
         {
             PoseFit fit = fitBy(problem, verdict, unit, firstThreshold(problem, scale > 0, unit), farthest,

@@ -6,8 +6,6 @@
 
 namespace cv::iib {
 
-const double REFINED = .25;  // pixels: least scale of the inlier threshold
-
 //! A pose that matches agree with.
 struct PoseFit : Fit<EpipolarProblem>
 {

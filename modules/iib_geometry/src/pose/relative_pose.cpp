@@ -11,8 +11,8 @@ namespace {
 
 const double LEAST_SCALE = .1, MOST_SCALE = 1000;  // pixels
 const double RANK = 1e-13;                         // keeps covariances invertible in double precision
-const double OF_DIRECTION = 1.3;                   // true over estimated variance of t, fitted on rendered places
-const double ONE_DIRECTION = 1;                    // radians: if two possible t differ by more, t is unknown
+const double OF_DIRECTION = 1.3;  // true over estimated variance of t, fitted on rendered places
+const double ONE_DIRECTION = 1;   // radians: if two possible t differ by more, t is unknown
 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {
@@ -93,7 +93,10 @@ PoseErrors estimateErrors(
     around.model = fit.model;
     around.scale = fit.errorScale;
     PoseErrors errors;
-    errors.covariance = covarianceOf(problem.subset(fit.used), around, parts, LARGEST_DEVIATION);
+    const double deviation = std::sqrt(OF_DIRECTION);
+    const auto scales = Square<EpipolarProblem::Step>::diag({1, 1, 1, deviation, deviation});
+    errors.covariance =
+            scales * covarianceOf(problem.subset(fit.used), around, parts, LARGEST_DEVIATION) * scales;
     const double limit = 1.5 * (fit.errorScale > LEAST_SCALE ? fit.errorScale
                                                              : scaleWithin(fit.squared, 3 * LEAST_SCALE,
                                                                        problem.parameters(), LEAST_NOISE));
@@ -127,9 +130,6 @@ PoseErrors estimateErrors(
         if (norm(Vec2d(step.val + 3)) > ONE_DIRECTION)
             errors.covariance += anyDirection;
     }
-    const double deviation = std::sqrt(OF_DIRECTION);
-    const auto scales = Square<EpipolarProblem::Step>::diag({1, 1, 1, deviation, deviation});
-    errors.covariance = scales * errors.covariance * scales;
     errors.covariance = limited(errors.covariance, LARGEST_DEVIATION, RANK);
     return errors;
 }
@@ -150,9 +150,8 @@ std::string reasonAgainst(
     if (fit.squared.empty())
         return "no pose agrees with five matches or more";
     if (fit.logFalseAlarms > Verdict::CERTAIN)
-        return format(
-                "the pose that agrees best has matches in %d places of the image, which could be "
-                "random: the images may not show the same scene",
+        return format("the pose that agrees best has matches in %d places of the image, which could be "
+                      "random: the images may not show the same scene",
                 verdict.places(within(3 * std::max(fit.scale, REFINED), fit.squared)));
     const double most = 1;  // ten such poses: eight right matches, inexact ones, show no less
     if (logFalseAlarmsNearby(problem, fit, verdict) > most)

@@ -22,6 +22,8 @@ namespace cv::iib {
     linearize(model, limit, rows)      the rows of matches whose squared error is below the limit
     Model moved(model, step) */
 
+const double REFINED = .25;           // pixels: least scale of the inlier threshold, that of refined matches
+const double MISSED = 1e-4;           // accepted probability that every sample has a wrong match
 const double FARTHEST = 9;            // squared scales
 const double FARTHEST_OF_CHOICE = 4;  // scales at which squared errors are cut off when a model is chosen
 
@@ -131,13 +133,11 @@ public:
     typedef typename Problem::Model Model;
 
     /** @param fewest least number of samples.
-    @param missed accepted probability that every sample has a wrong match.
     @param pool matches to sample from; empty: all.
     @param likely matches for every second sample. */
-    Search(const Problem& problem, const Loss& by, const Loss& wider, int fewest, double missed,
+    Search(const Problem& problem, const Loss& by, const Loss& wider, int fewest,
             const std::vector<int>& pool = {}, const std::vector<int>& likely = {})
-        : problem_(problem), by_(by), wider_(wider), fewest_(fewest), missed_(missed), pools_{pool},
-          random_(0x5eed)
+        : problem_(problem), by_(by), wider_(wider), fewest_(fewest), pools_{pool}, random_(0x5eed)
     {
         if (pool.empty())
             for (int i = 0; i < problem.size(); i++)
@@ -239,7 +239,7 @@ private:
         std::vector<double> squared;
         problem_.squaredErrors(model, squared);
         const double inside = FARTHEST * square(by_.scale);
-        // Fischler and Bolles (1981): log(missed) / log(1 - share of samples without a wrong match)
+        // Fischler and Bolles (1981): log(MISSED) / log(1 - share of samples without a wrong match)
         double right = 0;
         for (const std::vector<int>& pool : pools_)
         {
@@ -247,7 +247,7 @@ private:
                     std::count_if(pool.begin(), pool.end(), [&](int i) { return squared[i] < inside; });
             right += std::pow((double)near / pool.size(), problem_.sampleSize()) / pools_.size();
         }
-        wanted_ = right > 0 ? std::log(missed_) / std::log1p(-std::min(right, .999))
+        wanted_ = right > 0 ? std::log(MISSED) / std::log1p(-std::min(right, .999))
                             : std::numeric_limits<double>::max();
         wanted_ = std::max<double>(fewest_, wanted_);
     }
@@ -255,7 +255,6 @@ private:
     const Problem& problem_;
     const Loss by_, wider_;
     const int fewest_;
-    const double missed_;
     std::vector<std::vector<int>> pools_;
     RNG random_;
     std::vector<Proposal> proposals_;
@@ -310,25 +309,24 @@ inline bool findScale(const std::vector<double>& squared, double distance, int p
     return scale < most * distance && free(wider * distance) < mostMore * free(distance);
 }
 
-/** The model that most matches agree with. Deterministic.
-@param scale of Cauchy's loss, pixels; 0: estimated from the errors. Then scales are doubled, from that of refined matches on, with
-    few samples each, until most errors are far below the scale.
-@param mostScale largest scale to try, pixels. */
-template <class Problem> Fit<Problem> robustFit(const Problem& problem, double scale, double mostScale = .5)
+/** The model that most matches agree with. Deterministic. The scale of refined matches is tried with few samples, and twice that scale if
+most errors are not far below it. */
+template <class Problem> Fit<Problem> robustFit(const Problem& problem)
 {
-    const double finely = 1e-9, refined = .25, missed = 1e-4;
+    const double finely = 1e-9;
     const int fewest = 150, fewTrials = 1000, mostTrials = 10000;
     Fit<Problem> fit;
-    const auto choose = [&](Search<Problem>& search, double narrow, int trials) {
+    // Takes the best model of a search; returns whether its errors show a scale.
+    const auto choose = [&](Search<Problem>& search, double scale, int trials) {
         fit.squared.clear();
-        double least = std::numeric_limits<double>::infinity();
+        double least = std::numeric_limits<double>::infinity(), shown = scale;
         std::vector<double> squared;
         for (const typename Problem::Model& model : search.upTo(trials))
         {
             double sum = 0;
             problem.squaredErrors(model, squared);
             for (double error : squared)
-                sum += std::min(error, square(FARTHEST_OF_CHOICE * narrow));
+                sum += std::min(error, square(FARTHEST_OF_CHOICE * scale));
             if (sum >= least)
                 continue;
             least = sum;
@@ -336,30 +334,22 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem, double s
             fit.squared.swap(squared);
         }
         fit.samples = search.samples();
+        const bool shows = findScale(fit.squared, FARTHEST_OF_CHOICE * scale, problem.parameters(), shown);
+        fit.scale = shows ? shown : scale;
+        return shows;
     };
-    double narrow = scale > 0 ? scale : refined, estimated = scale;
-    bool found = scale > 0;
-    for (; !found && narrow <= mostScale; narrow *= found ? 1 : 2)
+    for (double scale : {REFINED, 2 * REFINED})
     {
-        Search<Problem> search(problem, Loss{narrow}, Loss{2 * narrow}, fewest, missed);
-        choose(search, narrow, fewTrials);
-        found = findScale(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), estimated);
-        if ((found || narrow == 2 * refined) && search.wantsMore())
-            choose(search, narrow, mostTrials);
-    }
-    if (!found)
-        narrow = 2 * refined;
-    if (fit.squared.empty() || (!found && mostScale < narrow))
-    {
-        Search<Problem> search(problem, Loss{narrow}, Loss{2 * narrow}, fewest, missed);
-        choose(search, narrow, mostTrials);
+        Search<Problem> search(problem, Loss{scale}, Loss{2 * scale}, fewest);
+        const bool found = choose(search, scale, fewTrials);
+        if ((found || scale > REFINED) && search.wantsMore())
+            choose(search, scale, mostTrials);
+        if (found)
+            break;
     }
     if (fit.squared.empty())
         return fit;
-    if (scale == 0 && !findScale(fit.squared, FARTHEST_OF_CHOICE * narrow, problem.parameters(), estimated))
-        estimated = narrow;
-    fit.scale = estimated;
-    polish(problem, Loss{estimated}, finely, fit.model);
+    polish(problem, Loss{fit.scale}, finely, fit.model);
     finish(problem, fit);
     return fit;
 }

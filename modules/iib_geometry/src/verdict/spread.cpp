@@ -14,7 +14,7 @@ const int CELLS_ACROSS = 8;
 const int LEAST_PLACE = 15, LEAST_MATCHES = 80;  // logos have fewer connected cells, or fewer matches
 const double LEAST_AREA = .045;                  // of an image: places have .055, logos at two places .04
 const double LEAST_SPREAD = .12;                 // of the keypoints' hull; a logo spans less
-const double LEAST_WHOLE = .05;                  // of the shared area
+const double LEAST_WHOLE = .05;                  // of an image
 // Captions and logos at two ends of a picture have .2 at most, pairs under changed illumination .41 at least.
 const double LEAST_SCATTER = .33;
 

@@ -291,7 +291,7 @@ TEST(Alignment, deviation_predicts_the_errors_of_the_corners)
                             i < 20 ? random.uniform(0., 300.) : image.at<double>(i, c) + random.gaussian(.4);
                 }
             const PlanarProblem problem(reference, image, kind);
-            const Fit<PlanarProblem> fit = robustFit(problem, 0);
+            const Fit<PlanarProblem> fit = robustFit(problem);
             ASSERT_FALSE(fit.squared.empty());
             const Matx33d model = fit.model;
             const Vec3d place = problem.inPixels(model) * Vec3d(300, 300, 1);

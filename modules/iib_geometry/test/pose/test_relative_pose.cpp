@@ -156,7 +156,7 @@ struct HopelessProblem
 TEST(RelativePose, hopeless_matches_get_the_most_samples)
 {
     const HopelessProblem problem;
-    const Fit<HopelessProblem> fit = robustFit(problem, 1);
+    const Fit<HopelessProblem> fit = robustFit(problem);
     EXPECT_EQ(10000, problem.trials);
     EXPECT_EQ(10000, fit.samples);
     EXPECT_DOUBLE_EQ(2 / 10000., fit.inlierRatio);
@@ -195,11 +195,11 @@ TEST(RelativePose, does_not_depend_on_the_number_of_threads)
     for (uint64 seed = 0; seed < 200; seed++)
     {
         setNumThreads(1);
-        const Fit<SenselessProblem> expected = robustFit(SenselessProblem{seed << 32}, 1);
+        const Fit<SenselessProblem> expected = robustFit(SenselessProblem{seed << 32});
         for (int threads : {2, 3, 8})
         {
             setNumThreads(threads);
-            const Fit<SenselessProblem> found = robustFit(SenselessProblem{seed << 32}, 1);
+            const Fit<SenselessProblem> found = robustFit(SenselessProblem{seed << 32});
             EXPECT_EQ(expected.model, found.model) << seed << ", " << threads;
             EXPECT_EQ(expected.samples, found.samples) << seed << ", " << threads;
         }
