@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 
-"""Measures maps of many images, made by repetition: map.py PLACE... --out FILE [--images N...]
+"""Measures maps of many images, made by repetition: map.py PLACE... --out FILE [--images N...], from few images to many
 
 PLACE: folders of tools/synthetic/views.py. Their views at noon are repeated, each copy of a place a hundred metres from the last, until the map
 has N images. Then views under other lights are localized in it; since copies look alike, in any of them. Dependencies: those of
@@ -11,6 +11,7 @@ import datetime
 import json
 import os
 import pathlib
+import resource
 import subprocess
 import sys
 import tempfile
@@ -78,11 +79,11 @@ def measured(places, count, queries):
         write_model(places, count, folder)
         begin = time.process_time()
         localization.build(folder / 'model', folder / 'images', folder / 'MAP', points=KEYPOINTS)
-        seconds = time.process_time() - begin
+        seconds, peak = time.process_time() - begin, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
         looked = json.loads(subprocess.run([sys.executable, '-c', LOOKING, str(folder / 'MAP'), *queries], check=True, capture_output=True, text=True).stdout)
         file = sum(part.stat().st_size for part in (folder / 'MAP').rglob('*') if part.is_file())
         points = int.from_bytes(next((folder / 'MAP').rglob('points3D.bin')).open('rb').read(8), 'little')
-    return {'images': count, 'points': points, 'build_seconds': seconds, 'file_mb': file / 2 ** 20, **looked}
+    return {'images': count, 'points': points, 'build_seconds': seconds, 'build_peak_mb': peak, 'file_mb': file / 2 ** 20, **looked}
 
 
 def main():
