@@ -108,7 +108,7 @@ void checkVerdict(ByteSource& in, const Mat& first, const Mat& second, bool vali
 void checkTransform(ByteSource& in, const Mat& first, const Mat& second)
 {
     const PlanarProblem problem(first, second, in.between(0, 3));
-    const Fit<PlanarProblem> fit = robustFit(problem, 0);
+    const Fit<PlanarProblem> fit = robustFit(problem);
     if (fit.squared.empty())
         return;
     Mat values;

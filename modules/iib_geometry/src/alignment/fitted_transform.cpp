@@ -74,22 +74,21 @@ FittedTransform::FittedTransform(const AlignedPoints& points, int kind)
 }
 
 FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const Matx33d& from, double scale)
-    : model(kind), problem(points.reference, points.image, kind), limit(3 * LEAST_SCALE),
-      agree(problem.size())
+    : model(kind), problem(points.reference, points.image, kind), limit(3 * REFINED), agree(problem.size())
 {
     const double roughly = 1e-3, finely = 1e-9;
     if (problem.size() < problem.sampleSize())
         return;
     fit.model = simplified(problem.fromPixels(from), kind);
-    if ((size_t)problem.size() > 2 * ENOUGH && scale > 2 * LEAST_SCALE)
+    if ((size_t)problem.size() > 2 * ENOUGH && scale > 2 * REFINED)
     {
         fit.model = problem.fromPixels(FittedTransform(thinned(points), kind, from, scale).transform());
-        scale = LEAST_SCALE;
+        scale = REFINED;
     }
-    for (; scale > LEAST_SCALE; scale /= 2)
+    for (; scale > REFINED; scale /= 2)
         polish(problem, Loss{scale}, roughly, fit.model);
     bool found = false;
-    for (scale = LEAST_SCALE; !found && scale <= 2 * LEAST_SCALE; scale *= 2)
+    for (scale = REFINED; !found && scale <= 2 * REFINED; scale *= 2)
     {
         polish(problem, Loss{scale}, roughly, fit.model);
         problem.squaredErrors(fit.model, fit.squared);
@@ -99,7 +98,7 @@ FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const Ma
     }
     polish(problem, Loss{fit.scale}, finely, fit.model);
     finish(problem, fit);
-    limit = 3 * std::max(fit.scale, LEAST_SCALE);
+    limit = 3 * std::max(fit.scale, REFINED);
     agree = within(limit, fit.squared);
 }
 
@@ -160,7 +159,7 @@ std::vector<FittedTransform> fittedTransforms(const AlignedPoints& points, const
 {
     std::vector<FittedTransform> fitted;
     for (int kind = coarse.model; kind <= ALIGN_HOMOGRAPHY; kind++)
-        fitted.emplace_back(points, kind, coarse.transform(), 2 * LEAST_SCALE);
+        fitted.emplace_back(points, kind, coarse.transform(), 2 * REFINED);
     return fitted;
 }
 

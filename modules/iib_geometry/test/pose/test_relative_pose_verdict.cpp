@@ -204,8 +204,8 @@ TEST(RelativePose, matches_displaced_at_random_have_no_pose_and_inexact_ones_hav
     for (int trial = 0; trial < 10; trial++)
     {
         const RelativePose truth = randomPose(random, .1);
-        displaced += Found(Views(random, truth, 200, 0, 20)).found;
-        inexact += Found(Views(random, truth, 200, 50, 3)).found;
+        displaced += PoseResult(Views(random, truth, 200, 0, 20)).found;
+        inexact += PoseResult(Views(random, truth, 200, 50, 3)).found;
     }
     EXPECT_EQ(0, displaced);
     EXPECT_GE(inexact, 9);
