@@ -61,6 +61,8 @@ struct Alignment
         if (fitted().exists())
             errors = cornerErrors(fitted(), points, pair.imageCorners(), beside, pixel);
         judgement = judge(all, best, evidence, errors);
+        if (coarse && judgement.against.empty() && !coarse->judgement.note.empty())
+            judgement.note = coarse->judgement.note;  // only the matches of the transform were refined
         if (judgement.against.empty() && tried > 1 &&
                 areOneStructure(marked(points, fitted().agree).reference.reshape(2)))
             judgement = {
