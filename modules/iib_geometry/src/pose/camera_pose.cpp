@@ -14,7 +14,7 @@ namespace {
 
 constexpr int ROUNDS = 20;
 constexpr int CLUSTERS = 4;  // across and down the area that the matches span in the image
-constexpr double LEAST_TOLD =
+constexpr double LEAST_CURVATURE =
         1e-12;  // smallest over largest eigenvalue of the curvature: below, the pose is not determined
 
 }  // namespace
@@ -229,8 +229,8 @@ bool clusteredCovariance(
     }
     for (const auto& cluster : gradients)
         ofGradient += cluster.second * cluster.second.t();
-    Vec6d told;
-    if (!eigen(curvature, told) || !(told[5] > LEAST_TOLD * told[0]))
+    Vec6d eigenvalues;
+    if (!eigen(curvature, eigenvalues) || !(eigenvalues[5] > LEAST_CURVATURE * eigenvalues[0]))
         return false;
     const double scale = deviationOf(errors), clusters = double(gradients.size());
     const Matx66d back = curvature.inv(DECOMP_CHOLESKY);
