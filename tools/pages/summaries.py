@@ -180,11 +180,16 @@ def write(file, heads, rows):
         csv.writer(opened, lineterminator='\n').writerows([heads, *rows])
 
 
+def pair_of(row):
+    return tuple(row[name] for name in ('set', 'sequence', 'target', 'detector', 'descriptor', 'points'))
+
+
 def summarize(source, target, groups_of, keys, values):
-    """Writes means of each group."""
-    groups = collections.defaultdict(lambda: collections.defaultdict(list))
-    for row in read(source):
-        for place in groups_of(row):
+    """Writes means of each group; of estimators, also of the pairs that findRelativePose answers."""
+    groups, every_row = collections.defaultdict(lambda: collections.defaultdict(list)), read(source)
+    refused = {pair_of(row) for row in every_row if row.get('estimator') == 'findRelativePose' and row['error'] == 'inf'}
+    for row in every_row:
+        for place in groups_of(row) + [place + ', answered' for place in groups_of(row) if refused and pair_of(row) not in refused]:
             groups[(place, *(row[key] for key in keys))][scene(row)].append([value(row) for value in values.values()])
     lines = []
     for key, scenes in sorted(groups.items()):

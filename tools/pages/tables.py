@@ -185,6 +185,16 @@ def pose_methods():
     return table(['', 'points of', 'descriptor', *('%s, %s' % (points, estimator) for points, estimator in ways)], lines)
 
 
+def pose_answers():
+    """The pairs that findRelativePose answers: its scores and PoseLib's."""
+    found, lines = estimates(), []
+    for (method, place, points, estimator), row in found.items():
+        if (place, points, estimator) == ('other light, answered', 'propagated', 'findRelativePose'):
+            whole = found[method, 'other light', points, estimator]
+            lines.append([*method, '%s of %s' % (row['pairs'], whole['pairs']), score(row), '%.2f' % float(found[method, place, points, 'PoseLib']['at_5'])])
+    return table(['points of', 'descriptor', 'answered', 'findRelativePose', 'PoseLib'], sorted(lines, key=lambda line: line[3], reverse=True))
+
+
 def own_descriptors():
     """Right matches at a detector's points by its own descriptor, the best of two others, and the default; and the ratio, also for sets that
     nothing was trained on."""
@@ -394,7 +404,7 @@ def run_figures():
 QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, own_descriptors, equal_sizes, presets, ratios, photographs, describing, chains, same_points, matching, step_by_step,
-    matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, ways.poses_and_time,
+    matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, pose_answers, ways.poses_and_time,
     detected_points, sure, uncertainty, night, first_patch)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
