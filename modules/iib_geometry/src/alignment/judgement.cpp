@@ -119,10 +119,15 @@ void judgeMotion(const FittedTransform& fitted, const Evidence& evidence, Judgem
 
 size_t simplestTrue(const std::vector<FittedTransform>& all, const Evidence& evidence)
 {
+    const double scale = 8 * REFINED;  // of a richer model's fit to the matches of a simple one
     size_t best = 0;
+    const auto isOfItsOwnPart = [&](const FittedTransform& simple, const FittedTransform& richer) {
+        return isElsewhere(richer, simple, evidence) &&
+               !isBetter({evidence.points, richer.model, simple.transform(), scale}, simple);
+    };
     for (size_t k = 1; k < all.size(); k++)
         if (!all[best].exists() ||
-                (gainOf(all[k], all[best]) > NEEDED_GAIN && !isElsewhere(all[k], all[best], evidence)))
+                (gainOf(all[k], all[best]) > NEEDED_GAIN && !isOfItsOwnPart(all[best], all[k])))
             best = k;
     return best;
 }
