@@ -332,6 +332,40 @@ TEST(Alignment, finds_the_static_part_beside_a_part_that_moved)
     }
 }
 
+/** Two blocks of text are rotated, and the second one moved. A similarity is true of the first block. A translation of the second block has
+many matches too, but a similarity is better there. */
+TEST(Alignment, chooses_no_untrue_model_of_another_part)
+{
+    RNG random(7);
+    const Matx23d rotation(1.004, .007, 3, -.007, 1.004, -4);
+    for (int trial = 0; trial < 4; trial++)
+    {
+        Mat images[] = {Mat(900, 700, CV_8U, Scalar(245)), Mat(900, 700, CV_8U, Scalar(245))};
+        for (int line = 0; line < 22; line++)
+        {
+            String text;
+            for (int k = 0; k < 36; k++)
+                text += (char)random.uniform('a', 'z' + 3);
+            for (int i = 0; i < 2; i++)
+                putText(images[i], text, Point(50, 60 + 34 * (line + (i && line >= 11))),
+                        FONT_HERSHEY_SIMPLEX, .65, Scalar(30), 1, LINE_AA);
+        }
+        warpAffine(images[1], images[1], rotation, Size(), INTER_CUBIC, BORDER_REPLICATE);
+        images[1] *= .8;
+        Mat transform;
+        ASSERT_TRUE(alignImages(images[0], images[1], transform, ALIGN_AUTO));
+        double error = 1;
+        for (int by : {0, 34})
+        {
+            const Matx33d truth = Matx33d(rotation(0, 0), rotation(0, 1), rotation(0, 2), rotation(1, 0),
+                                          rotation(1, 1), rotation(1, 2), 0, 0, 1) *
+                                  Matx33d(1, 0, 0, 0, 1, by, 0, 0, 1);
+            error = std::min(error, cornerError(transform, truth.inv()));
+        }
+        EXPECT_LT(error, .5);
+    }
+}
+
 //! Like land in a corner of the image, beside waves that cannot match.
 TEST(Alignment, finds_a_place_in_one_part_of_the_image)
 {
