@@ -195,6 +195,13 @@ def pose_answers():
     return table(['points of', 'descriptor', 'answered', 'findRelativePose', 'PoseLib'], sorted(lines, key=lambda line: line[3], reverse=True))
 
 
+def not_included():
+    """Poses under mistakes that all matches share."""
+    return table(['mistake', 'rotations inside 95 %', 'directions', 'median error of the rotation', 'of the direction'],
+                 [[row['mistake'], *('%.0f %%' % (100 * float(row[name])) for name in ('rotation_inside', 'direction_inside')),
+                   *('%.2f°' % float(row[name]) for name in ('rotation', 'direction'))] for row in rows('not_included.csv')])
+
+
 def own_descriptors():
     """Right matches at a detector's points by its own descriptor, the best of two others, and the default; and the ratio, also for sets that
     nothing was trained on."""
@@ -405,7 +412,7 @@ QUESTIONS = dict.fromkeys(row['question'] for row in PAPER)
 ALL = {function.__name__: function for function in (
     drop_in, own_descriptors, equal_sizes, presets, ratios, photographs, describing, chains, same_points, matching, step_by_step,
     matching_modes, learned_points, paper_orders, localization_systems, localization_setups, localization_photographs, pose_methods, pose_answers, ways.poses_and_time,
-    detected_points, sure, uncertainty, night, first_patch)}
+    detected_points, sure, uncertainty, not_included, night, first_patch)}
 ALL.update({'paper_' + name: functools.partial(paper, question) for name, question in zip(
     ('channels', 'mappings', 'extras', 'overlap', 'granularity', 'sampling', 'others'), QUESTIONS)})
 ALL.update({'photographs_of_many': functools.partial(photographs, False), 'views_affine': functools.partial(by_change, 'some photographs', ('matchViews', 'AffineFeature')),
