@@ -173,7 +173,7 @@ double estimateRotation(const std::vector<KeyPoint>& keypoints1, const std::vect
     const double angle = votes.peak();
     if (angle < 0)
         CV_Error(Error::StsBadArg,
-                format("matchRotated: %d matches; at least two with different positions are needed", (int)n));
+                format("%d matches: a rotation needs at least two with different positions", (int)n));
     return angle;
 }
 
