@@ -81,11 +81,11 @@ std::vector<Detector> methods(Options options, int points, Which which)
     }
     Detector &hessian = all[0], clahe = all[2];
     hessian.only = {"IIB UNIVERSAL"};
-    if (which == NOISY)
-        return {all[0], all[1], all[2]};
     hessian.others = {
             {"SIFT", []() -> cv::Ptr<cv::Feature2D> { return cv::makePtr<SiftAt>(); }, 0, "", {}, false}};
     hessian.only.push_back("SIFT");
+    if (which == NOISY)
+        return {all[0], all[1], all[2]};
     if (which == COUNTED)
         return {all[0], all[1]};
     hessian.only.push_back("IIB SMALL");
@@ -199,7 +199,7 @@ int controls(const Options& options, const std::vector<ImagePair>&)
                         const Described &from = (*r)[i], &to = (*t)[i];
                         const Fields key = with(pair.key(), detector.name);
                         use(with(key, from.name), from, to);
-                        if (which == ALL && from.name == "SIFT" && detector.name != last[0])
+                        if (which != COUNTED && from.name == "SIFT" && detector.name != last[0])
                             use(with(key, "RootSIFT"), rooted(from), rooted(to));
                     }
                 }

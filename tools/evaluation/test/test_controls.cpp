@@ -71,7 +71,7 @@ TEST(Controls, neighbours_by_known_depth)
         rows++;
     }
     EXPECT_EQ(5u, ratios.size());
-    EXPECT_EQ(5 * (12u + 2 * 3), rows);  // three methods with each of two noises
+    EXPECT_EQ(5 * (12u + 2 * 7), rows);  // seven methods with each of two noises
 
     // With a wrong depth no neighbour is right. A more distant wall in one image hides every point.
     cv::imwrite(folder.path("wall_2/map/depth/a.png"), cv::Mat(192, 320, CV_16U, cv::Scalar(300)));
