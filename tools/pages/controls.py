@@ -10,9 +10,10 @@ import pathlib
 import summaries
 
 RESULTS = pathlib.Path(__file__).resolve().parents[2] / 'doc/results'
-CHAIN, OTHER = ('Hessian', 'IIB UNIVERSAL'), ('SIFT normalized', 'SIFT')
+CHAIN, OTHER, ROOT = ('Hessian', 'IIB UNIVERSAL'), ('SIFT normalized', 'SIFT'), ('SIFT normalized', 'RootSIFT')
 # Kinds of places, grouped by renderer and by whether a preset was trained on walks through other places of the kind.
 GROUPS = {'trained on the kind': ('room', 'terrain'), 'same renderer': ('street', 'facade'), 'new kinds': ('yard', 'hall'), 'other renderer': ('court', 'store')}
+SAME = CHAIN[0], 'RootSIFT'  # the descriptor alone is another
 COUNTED = CHAIN, ('Hessian', 'SIFT'), ('SIFT normalized', 'IIB UNIVERSAL'), OTHER, ('SIFT', 'SIFT')  # methods of the table of neighbours
 WRONG = 10  # degrees
 POINTS = {'Hessian': 'HessianDetector', 'SIFT normalized': 'SIFT normalized', 'SIFT CLAHE': 'SIFT on CLAHE'}
@@ -140,17 +141,19 @@ def table(shown=None):
 
 
 def kinds():
-    """The chain and normalized SIFT by kind of place."""
+    """The chain, and RootSIFT at normalized SIFT's points, by kind of place. Of two places the difference of each is shown, of more an interval."""
     every = [of for of in (of for kinds in GROUPS.values() for of in kinds) if (of, *CHAIN) in found()]
     lines = []
     for of in every:
-        ours, best = found()[of, *CHAIN], found()[of, *OTHER]
-        lines.append([of, ours['places'], ours['pairs'], '%.2f' % float(ours['at_5']), '%.2f' % float(best['at_5']), less(best)])
-    return summaries.table(['kind of place', 'places', 'pairs', 'chain', 'SIFT normalized', 'difference'], lines)
+        ours, best = found()[of, *CHAIN], found()[of, *ROOT]
+        lines.append([of, ours['places'], ours['pairs'], *('%.2f' % float(row['at_5']) for row in (ours, best)), less(best)])
+    return summaries.table(['kind of place', 'places', 'pairs', 'chain', 'SIFT normalized, RootSIFT', 'difference'], lines)
 
 
 def less(row):
-    return '%.2f (%.2f to %.2f)' % tuple(float(row[column]) + 0. for column in ('less', 'less_low', 'less_high'))
+    """How much less than the chain: with an interval over places, of two with both of them, of one alone."""
+    shown = {1: '%.2f', 2: '%.2f (%.2f, %.2f)'}.get(int(row['places']), '%.2f (%.2f to %.2f)')
+    return shown % tuple(float(row[column]) + 0. for column in ('less', 'less_low', 'less_high')[:shown.count('%')])
 
 
 def figures():
@@ -161,10 +164,12 @@ def figures():
         return max((row for key, row in found().items() if key[:2] == ('other light', points) and key[2] in ('SIFT', 'RootSIFT')), key=lambda row: float(row['at_5']))
     ours = found()['other light', *CHAIN]
     scores = {'chain': ours, 'small': found()['other light', 'Hessian', 'IIB SMALL'], 'same_points': best('Hessian'), 'sift_points': best('SIFT normalized')}
-    short = {**scores, 'default_ratio': found('0.92')['other light', *CHAIN], 'sift': best('SIFT')}
-    gains = {'gain': (OTHER[0], 'RootSIFT'), 'gain_by_points': (OTHER[0], CHAIN[1]), 'gain_by_descriptor': (CHAIN[0], 'RootSIFT')}
+    short = {**scores, 'default_ratio': found('0.92')['other light', *CHAIN], 'sift': best('SIFT'), 'orb': found()['other light', 'ORB', 'ORB']}
+    gains = {'gain': ROOT, 'gain_by_points': (OTHER[0], CHAIN[1]), 'gain_by_descriptor': SAME}
+    fixed = max((found(row['ratio'])['other light', *SAME] for row in summaries.read(RESULTS / 'controls.csv') if row['ratio'] != 'best'), key=lambda row: float(row['at_5']))
     return {**{name: summaries.score(row) for name, row in scores.items()}, **{name + '_mean': '%.2f' % float(row['at_5']) for name, row in short.items()},
-            **{name: less(found()['other light', *method]) for name, method in gains.items()},
+            **{name: less(found()['other light', *method]) for name, method in gains.items()}, 'gain_at_fixed': less(fixed),
+            'gain_new_kinds': less(found()['new kinds', *SAME]), 'gain_other_renderer': less(found()['other renderer', *SAME]),
             'best_sift': short['sift']['descriptor'],
             'pairs': ours['pairs'], 'places': ours['places']}
 
@@ -191,8 +196,10 @@ def wrong():
         lines.append(['two lights, ' + group, 'findRelativePose', row['pairs'], row['poses'], row['wrong'], int(row['wrong']), int(row['pairs'])])
     strangers = next(row for row in summaries.read(RESULTS / 'uncertainty.csv') if row['data'] == 'images of different places')
     views = next(row for row in summaries.read(RESULTS / 'views.csv') if (row['place'], row['method']) == ('unrelated', 'matchViews'))
+    aligned = [row for row in summaries.read(RESULTS / 'alignment.csv') if row['place'] == 'other scenes']
     for what, data, count, yes in (('findRelativePose', 'images of different places', int(strangers['pairs']), int(strangers['found'])),
-                                   ('matchViews', 'images of different sets', int(views['pairs']), round(float(views['found']) * int(views['pairs'])))):
+                                   ('matchViews', 'images of different sets', int(views['pairs']), round(float(views['found']) * int(views['pairs']))),
+                                   *(('alignImages, ' + row['model'], 'images of different sets', int(row['pairs']), int(row['found'])) for row in aligned)):
         lines.append([data, what, str(count), str(yes), str(yes), yes, count])
     return summaries.table(['pairs of', 'by', 'pairs', 'significant', 'of them wrong', 'wrong of all pairs', '95 % bound'],
                            [[*line[:5], '%.1f %%' % (100 * line[5] / line[6]), 'below %.1f %%' % (100 * upper_bound(*line[5:]))] for line in lines])
