@@ -6,23 +6,25 @@ import functools
 import summaries
 import timings
 
-CHAIN, LEARNED, REFINED = 'recommended chain', 'ALIKED-n16', 'propagateMatches, findRelativePose'
+CHAIN, LEARNED = 'recommended chain', 'ALIKED-n16'
 
 
 def summarize(source, target):
-    """Means of each way in other light. On the same pairs, what it gains over the refined chain of about as many points, and over that of most."""
+    """Means of each way in other light. On the same pairs and by the same estimator, what it gains over the chain of about as many points, and over
+    that of most."""
     rows, score = [row for row in summaries.read(source) if summaries.light_place(row) == ['other light']], summaries.pose_area(5)
     ways, lines = summaries.group(rows, 'detector', 'points', 'matches', 'estimator'), []
 
     def pair(row):
         return row['set'], row['sequence'], row['target']
-    chain = {int(key[1]): {pair(row): score(row) for row in of} for key, of in ways.items() if (key[0], key[3]) == (CHAIN, REFINED)}
+    chain = {(key[3], int(key[1])): {pair(row): score(row) for row in of} for key, of in ways.items() if key[0] == CHAIN}
     for key, of in sorted(ways.items()):
         places = summaries.group(of, 'set').values()
         means = (summaries.shown([value(row) for row in of]) for value in (summaries.column('milliseconds'), *map(summaries.pose_area, (10, 2, 5))))
         lines.append([*key, len(of), *means, *('%.4g' % end for end in summaries.interval([[score(row) for row in members] for members in places]))])
-        for points in (min(chain, key=lambda count: abs(count - int(key[1]))), max(chain)):
-            gains = [[score(row) - chain[points][pair(row)] for row in members] for members in places]
+        counts = [points for estimator, points in chain if estimator == key[3]]
+        for points in (min(counts, key=lambda count: abs(count - int(key[1]))), max(counts)):
+            gains = [[score(row) - chain[key[3], points][pair(row)] for row in members] for members in places]
             lines[-1] += ['%.4g' % number for number in (summaries.mean(sum(gains, [])), *summaries.interval(gains))]
     gained = [name + end for name in ('gain', 'over_most') for end in ('', '_low', '_high')]
     summaries.write(target, ['detector', 'points', 'matches', 'estimator', 'pairs', 'milliseconds', 'at_10', 'at_2', 'at_5', 'low', 'high', *gained], lines)
@@ -60,6 +62,6 @@ def figures():
     chain's 4000."""
     rows = {'%s_%d' % (name, key[1]): ways for name, detector in (('aliked', LEARNED), ('chain', CHAIN)) for key, ways in found().items() if key[0] == detector}
     values = {name + '_' + way: '%.2f' % float(row['at_5']) for name, ways in rows.items() for way, row in ways.items()}
-    gains = {name + '_' + column: gain(ways['refined'], column) for name, ways in rows.items() for column in ('gain', 'over_most')}
+    gains = {name + '_' + column + end: gain(ways[way], column) for name, ways in rows.items() for column in ('gain', 'over_most') for way, end in (('refined', ''), ('plain', '_plain'))}
     few, many = rows['aliked_1000']['refined'], rows['chain_4000']['refined']
     return {**values, **gains, 'times': '%.0f' % (float(few['milliseconds']) / float(many['milliseconds'])), 'pairs': few['pairs']}
