@@ -58,9 +58,9 @@ opencv_iib.setNumThreads(1)
 cv2.setNumThreads(1)
 def resident():
     return int(open('/proc/self/statm').read().split()[1]) * resource.getpagesize() / 2**20
-before, begin = resident(), time.perf_counter()
+before, begin = resident(), time.process_time()
 localizer = Localizer(sys.argv[1])
-opened, took = time.perf_counter() - begin, {True: [], False: []}
+opened, took = time.process_time() - begin, {True: [], False: []}
 for line in sys.argv[2:]:
     file, _, camera = line.partition('|')
     image = cv2.imread(file, cv2.IMREAD_GRAYSCALE)
