@@ -271,14 +271,13 @@ def photograph_figures():
     """Reconstruction of a statue by many cameras, places found in maps, and points kept in other light."""
     found = rows('photographs.csv')
     statue = {row['method']: row for row in found if row['scene'] == 'liberty' and row['registered']}
-    run, = (row for row in rows('runs.csv') if row['file'] == 'photographs.csv, liberty')
 
     def joined(row):
         largest, *others = (int(n) for n in (row['registered'].split()[0] + ' ' + row['others']).split())
-        return '%d in %d parts, %d in the largest' % (largest + sum(others), 1 + len(others), largest) if others else '%d in one' % largest
+        return '%d in the largest of %d' % (largest, 1 + len(others)) if others else '%d in the only one' % largest
     near = located_photographs()[1]
     close, shared = next(row['close'] for row in found if row['method'] == 'chain and SIFT').split(' of ')
-    figures = {'images': statue['chain']['registered'].split()[-1], 'date': run['date'], 'disagree': '%d of %s' % (int(shared) - int(close), shared)}
+    figures = {'images': statue['chain']['registered'].split()[-1], 'disagree': '%d of %s' % (int(shared) - int(close), shared)}
     for name, method in (('chain', 'recommended chain'), ('sift', 'SIFT, normalized image, refined')):
         figures.update(zip((name + end for end in ('_located', '_relit', '_near', '_near_relit', '_unseen', '_unseen_relit')), near[method]))
     points = {(row['scene'], row['method']): int(row['points']) for row in found if row['points']}
