@@ -68,7 +68,7 @@ branch_of() {
     case "${1#modules/iib/}" in
     test/real/*) ;;
     */kernels/mappings.hpp | */orientation.hpp | */features.hpp | test/test_main.cpp | perf/perf_main.cpp | */textures.*) echo descriptor ;;
-    CMakeLists.txt | cmake/* | src/precomp.hpp | test/test_precomp.hpp | */detail/code_layout.hpp | */detail/packed_codes.hpp) echo matcher ;;
+    CMakeLists.txt | cmake/* | src/precomp.hpp | test/test_precomp.hpp | */detail/packed_codes.hpp) echo matcher ;;
     */index_file.* | */checked_file.* | */detail/files.hpp | src/common/files.cpp | */temporary_file.hpp | */test_index_file.cpp) echo files ;;
     */matcher/kernels/*.simd.hpp | src/common/vectors.simd.hpp | */test_hamming.cpp) echo hamming ;;
     */iib/matcher.hpp | src/matcher/* | */outputs.hpp | src/common/file_numbers.hpp | */test_errors.hpp) echo matcher ;;
