@@ -68,13 +68,13 @@ branch_of() {
     case "${1#modules/iib/}" in
     test/real/*) ;;
     */kernels/mappings.hpp | */orientation.hpp | */features.hpp | test/test_main.cpp | perf/perf_main.cpp | */textures.*) echo descriptor ;;
-    CMakeLists.txt | cmake/* | src/precomp.hpp | test/test_precomp.hpp | */detail/code_layout.hpp | */detail/packed_codes.hpp) echo matcher ;;
+    CMakeLists.txt | cmake/* | src/precomp.hpp | test/test_precomp.hpp | */detail/packed_codes.hpp) echo matcher ;;
     */index_file.* | */checked_file.* | */detail/files.hpp | src/common/files.cpp | */temporary_file.hpp | */test_index_file.cpp) echo files ;;
     */matcher/kernels/*.simd.hpp | src/common/vectors.simd.hpp | */test_hamming.cpp) echo hamming ;;
     */iib/matcher.hpp | src/matcher/* | */outputs.hpp | src/common/file_numbers.hpp | */test_errors.hpp) echo matcher ;;
     */test_matcher.cpp | */matcher_oracle.* | */random_descriptors.hpp) echo matcher ;;
     */aligned_buffer.hpp | */test_matcher_chunks.cpp) echo hamming ;;
-    */iib/hessian_detector.hpp | */detector/kernels/* | src/detector/hessian* | */blobs.* | */scale_space.*) echo detector ;;
+    */iib/hessian_detector.hpp | src/detector/hessian* | */blobs.* | */scale_space.*) echo detector ;;
     src/normalization/* | src/common/image_input.* | src/common/grey.*) echo detector ;;
     */hessian_oracle.* | */test_hessian_detector.cpp | */oracle_pixels.hpp | */normalization_oracle.* | */test_images.*) echo detector ;;
     *normalized_detector.* | */detector_file.* | */test_local_normalization.cpp | */seen_image.hpp) echo normalized ;;
@@ -86,7 +86,7 @@ branch_of() {
     README.md) echo presets ;;
     doc/format.md) echo bits ;;
     */kernels/boxes.simd.hpp) echo steps ;;
-    src/descriptor/kernels/* | src/descriptor/plan.* | src/descriptor/parameters.* | src/common/bit_io.hpp | */detail/places.hpp) echo kernels ;;
+    src/descriptor/kernels/* | src/descriptor/plan.* | src/descriptor/parameters.* | */detail/places.hpp) echo kernels ;;
     */test_descriptor_kernels.cpp) echo kernels ;;
     src/descriptor/* | */test_keypoint_batches.cpp) echo steps ;;
     */test_descriptor_bits.cpp | */descriptor_oracle.* | */box_oracle.cpp | */describe.* | */test_boxes.cpp) echo bits ;;

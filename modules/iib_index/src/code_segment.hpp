@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "mapped_file.hpp"
 #include "opencv2/iib/detail/packed_codes.hpp"
 
 #include <mutex>
@@ -22,6 +21,23 @@ struct SegmentEntry
 //! Writes codes to a file, which appears only when it is complete and on the disk.
 SegmentEntry writeSegment(
         const String& filename, uint64 number, const std::vector<int>& levels, const PackedCodes& codes);
+
+//! A file mapped into read-only memory, and read from the disk on access. The file must not be shortened meanwhile.
+class MappedFile
+{
+public:
+    explicit MappedFile(const String& filename);
+    ~MappedFile();
+    MappedFile(const MappedFile&) = delete;
+    MappedFile& operator=(const MappedFile&) = delete;
+
+    const uchar* data() const { return bytes; }
+    size_t size() const { return length; }
+
+private:
+    const uchar* bytes;
+    size_t length;
+};
 
 //! A segment's file, mapped and checked on first use.
 class CodeSegment

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "precomp.hpp"
-#include "mapped_file.hpp"
+#include "code_segment.hpp"
 #include "opencv2/iib/detail/files.hpp"
 
 #ifdef _WIN32

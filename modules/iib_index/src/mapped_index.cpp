@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "precomp.hpp"
 #include "index_folder.hpp"
-#include "manifest.hpp"
 
 #include <functional>
+#include <numeric>
 #include <set>
 
 namespace cv { namespace iib {
@@ -26,57 +26,37 @@ size_t segmentHolding(int64 number, const std::vector<size_t>& firsts, const cha
 }
 
 //! A commit of an index, ready for searches.
-class IndexCommit
+struct IndexCommit
 {
-public:
+    Manifest manifest;
+    std::vector<Ptr<CodeSegment>> segments;
+    std::vector<size_t> firstRows, firstImages;  //!< of each segment, then the total
+
     //! Reuses segments of an earlier commit, which may be mapped already.
     //! @throws cv::Exception for invalid level sizes in the manifest.
-    IndexCommit(const String& folder, const Manifest& manifest, const IndexCommit* before)
-        : committed(manifest), firstRows(1, 0), firstImages(1, 0)
+    IndexCommit(const String& folder, const Manifest& manifest_, const IndexCommit* before)
+        : manifest(manifest_), firstRows(1, 0), firstImages(1, 0)
     {
         PackedCodes::check(manifest.levelSizes);
-        const size_t known = before ? before->opened.size() : 0;
+        const size_t known = before ? before->segments.size() : 0;
         for (size_t i = 0; i < manifest.segments.size(); i++)
         {
             const SegmentEntry& entry = manifest.segments[i];
-            const bool same = i < known && before->opened[i]->entry().number == entry.number &&
-                              before->opened[i]->entry().checksum == entry.checksum;
-            opened.push_back(
-                    same ? before->opened[i]
+            const bool same = i < known && before->segments[i]->entry().number == entry.number &&
+                              before->segments[i]->entry().checksum == entry.checksum;
+            segments.push_back(
+                    same ? before->segments[i]
                          : makePtr<CodeSegment>(segmentOf(folder, entry.number), entry, manifest.levelSizes));
             firstRows.push_back(firstRows.back() + (size_t)entry.rows);
             firstImages.push_back(firstImages.back() + (size_t)entry.images);
         }
     }
 
-    const Manifest& manifest() const { return committed; }
-    int segments() const { return (int)opened.size(); }
-    int64 images() const { return (int64)firstImages.back(); }
-    int64 rows() const { return (int64)firstRows.back(); }
-
-    int64 imageOf(int64 row) const
-    {
-        const size_t i = segmentHolding(row, firstRows, "row");
-        return (int64)(firstImages[i] + opened[i]->codes().imageOf((size_t)row - firstRows[i]));
-    }
-
-    int64 firstRow(int64 image) const
-    {
-        const size_t i = segmentHolding(image, firstImages, "image");
-        return (int64)(firstRows[i] + opened[i]->codes().start((size_t)image - firstImages[i]));
-    }
-
-    Mat descriptors(int64 image) const
-    {
-        const size_t i = segmentHolding(image, firstImages, "image");
-        return opened[i]->codes().descriptors((size_t)image - firstImages[i]);
-    }
-
     CodePart part(int segment) const
     {
         // The codes come first, to check the number of images: a damaged manifest may claim more than memory holds.
-        const PackedCodes& codes = opened[segment]->codes();
-        const std::vector<uint64>& removed = committed.removed;
+        const PackedCodes& codes = segments[segment]->codes();
+        const std::vector<uint64>& removed = manifest.removed;
         const auto first = std::lower_bound(removed.begin(), removed.end(), firstImages[segment]),
                    end = std::lower_bound(first, removed.end(), firstImages[segment + 1]);
         std::vector<bool> hidden(first == end ? 0 : firstImages[segment + 1] - firstImages[segment], false);
@@ -84,20 +64,7 @@ public:
             hidden[(size_t)*image - firstImages[segment]] = true;
         return {&codes, firstRows[segment], hidden};
     }
-
-private:
-    Manifest committed;
-    std::vector<Ptr<CodeSegment>> opened;
-    std::vector<size_t> firstRows, firstImages;  //!< of each segment, then the total
 };
-
-uint64 imagesOf(const Manifest& manifest)
-{
-    uint64 images = 0;
-    for (const SegmentEntry& segment : manifest.segments)
-        images += segment.images;
-    return images;
-}
 
 class MappedIndexImpl CV_FINAL : public MappedIndex
 {
@@ -107,14 +74,29 @@ public:
     {
     }
 
-    std::vector<int> levelSizes() const CV_OVERRIDE { return last.manifest().levelSizes; }
-    int64 images() const CV_OVERRIDE { return last.images(); }
-    int64 rows() const CV_OVERRIDE { return last.rows(); }
-    int segments() const CV_OVERRIDE { return last.segments(); }
-    uint64 version() const CV_OVERRIDE { return last.manifest().checksum; }
-    int64 imageOf(int64 row) const CV_OVERRIDE { return last.imageOf(row); }
-    int64 firstRow(int64 image) const CV_OVERRIDE { return last.firstRow(image); }
-    Mat descriptors(int64 image) const CV_OVERRIDE { return last.descriptors(image); }
+    std::vector<int> levelSizes() const CV_OVERRIDE { return last.manifest.levelSizes; }
+    int64 images() const CV_OVERRIDE { return (int64)last.firstImages.back(); }
+    int64 rows() const CV_OVERRIDE { return (int64)last.firstRows.back(); }
+    int segments() const CV_OVERRIDE { return (int)last.segments.size(); }
+    uint64 version() const CV_OVERRIDE { return last.manifest.checksum; }
+
+    int64 imageOf(int64 row) const CV_OVERRIDE
+    {
+        const size_t i = segmentHolding(row, last.firstRows, "row"), first = last.firstRows[i];
+        return (int64)(last.firstImages[i] + last.segments[i]->codes().imageOf((size_t)row - first));
+    }
+
+    int64 firstRow(int64 image) const CV_OVERRIDE
+    {
+        const size_t i = segmentHolding(image, last.firstImages, "image"), first = last.firstImages[i];
+        return (int64)(last.firstRows[i] + last.segments[i]->codes().start((size_t)image - first));
+    }
+
+    Mat descriptors(int64 image) const CV_OVERRIDE
+    {
+        const size_t i = segmentHolding(image, last.firstImages, "image"), first = last.firstImages[i];
+        return last.segments[i]->codes().descriptors((size_t)image - first);
+    }
 
     void add(InputArrayOfArrays descriptors) CV_OVERRIDE
     {
@@ -133,7 +115,8 @@ public:
     void remove(const std::vector<int64>& images) CV_OVERRIDE
     {
         commit([&](Manifest& next) {
-            const uint64 count = imagesOf(next);
+            const uint64 count = std::accumulate(next.segments.begin(), next.segments.end(), (uint64)0,
+                    [](uint64 sum, const SegmentEntry& segment) { return sum + segment.images; });
             for (int64 image : images)
                 checkNumber(image, count, "image");
             std::set<uint64> removed(next.removed.begin(), next.removed.end());

@@ -204,7 +204,7 @@ std::string sealed(const std::string& bytes, size_t position)
     return with(bytes, position, hash.value());
 }
 
-// Files that no call writes, with right checksums. See manifest.hpp and code_segment.hpp for positions.
+// Files that no call writes, with right checksums. See index_folder.hpp and code_segment.hpp for positions.
 TEST_F(IIB_MappedIndex_Files, impossible_numbers_are_refused)
 {
     index->remove({1, 5});

@@ -4,6 +4,8 @@
 
 #pragma once
 
+#include <memory>
+
 #include "../precomp.hpp"
 
 namespace cv { namespace iib {
@@ -22,28 +24,18 @@ template <typename T> inline size_t wholeLines(size_t n)
 template <typename T> class AlignedBuffer
 {
 public:
-    AlignedBuffer() : memory(0), values(0), capacity(0) {}
+    AlignedBuffer() : values(0), capacity(0) {}
     explicit AlignedBuffer(size_t n) : AlignedBuffer() { allocate(n); }
-    AlignedBuffer(AlignedBuffer&& other) : AlignedBuffer()
-    {
-        std::swap(memory, other.memory);
-        std::swap(values, other.values);
-        std::swap(capacity, other.capacity);
-    }
-    ~AlignedBuffer() { fastFree(memory); }
-    AlignedBuffer(const AlignedBuffer&) = delete;
-    AlignedBuffer& operator=(const AlignedBuffer&) = delete;
 
     //! Room for at least n values; the content is lost if it grows.
     void allocate(size_t n)
     {
         if (n <= capacity)
             return;
-        fastFree(memory);
-        memory = 0;
+        memory.reset();
         capacity = 0;
-        memory = fastMalloc(n * sizeof(T) + CACHE_LINE);
-        values = alignPtr(static_cast<T*>(memory), CACHE_LINE);
+        memory.reset(fastMalloc(n * sizeof(T) + CACHE_LINE));
+        values = alignPtr(static_cast<T*>(memory.get()), CACHE_LINE);
         capacity = n;
     }
 
@@ -51,7 +43,12 @@ public:
     const T* data() const { return values; }
 
 private:
-    void* memory;
+    struct Free
+    {
+        void operator()(void* p) const { fastFree(p); }
+    };
+
+    std::unique_ptr<void, Free> memory;
     T* values;
     size_t capacity;
 };

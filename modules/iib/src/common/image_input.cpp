@@ -91,11 +91,11 @@ void checkKeyPoints(const std::vector<KeyPoint>& keypoints, bool withAngles)
     }
 }
 
-Point2d positionOf(const std::vector<KeyPoint>& keypoints, int index)
+Point2d positionOf(const std::vector<KeyPoint>& keypoints, int index, int image)
 {
     if (index < 0 || (size_t)index >= keypoints.size())
-        CV_Error(Error::StsOutOfRange,
-                format("a match is of keypoint %d; there are %d", index, (int)keypoints.size()));
+        CV_Error(Error::StsOutOfRange, format("a match is of keypoint %d of image %d, which has %d", index,
+                                               image, (int)keypoints.size()));
     const Point2f pt = keypoints[index].pt;
     if (!(std::abs(pt.x) <= FLT_MAX && std::abs(pt.y) <= FLT_MAX))
         CV_Error(Error::StsBadArg,

@@ -27,8 +27,8 @@ Mat integerMap(const Mat& image);
 //! Throws unless every keypoint has a finite position and a finite, positive size. @param withAngles check angles too.
 void checkKeyPoints(const std::vector<KeyPoint>& keypoints, bool withAngles);
 
-//! The position of a match's keypoint; throws if there is no such keypoint or its position is not finite.
-Point2d positionOf(const std::vector<KeyPoint>& keypoints, int index);
+//! The position of a match's keypoint; throws if the image, 1 or 2, has no such keypoint or its position is not finite.
+Point2d positionOf(const std::vector<KeyPoint>& keypoints, int index, int image);
 
 //! Base of detectors that take every image that passes checkImage().
 struct AnyImage

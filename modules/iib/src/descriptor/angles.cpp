@@ -2,8 +2,6 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "angles.hpp"
-
 #include <array>
 #include <map>
 #include <numeric>

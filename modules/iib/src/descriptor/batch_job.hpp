@@ -38,6 +38,14 @@ template <typename Work> void parallelJobs(int count, const Work& work)
     });
 }
 
+/** Sets the angles of regions for ORIENTATION_GRADIENT: the peak of a histogram of gradient directions between 32 x 32
+ cells, weighted by magnitude and by a Gaussian of half the region's radius.
+@param grey CV_8U or CV_16U.
+@param keypoints of the regions: of several with the same position and size, the second gets the second highest peak, and
+so on. */
+void findAngles(const DescriptorPlan& plan, const Mat& grey, const std::vector<KeyPoint>& keypoints,
+        std::vector<SupportRegion>& regions);
+
 /** A batch of keypoints that are described together, all upright or all rotated. Regions, pixels and rows of descriptors are
  those of all keypoints of the image. */
 struct BatchJob

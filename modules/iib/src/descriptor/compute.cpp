@@ -2,10 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "compute.hpp"
-
 #include "../common/image_input.hpp"
-#include "angles.hpp"
 #include "batch_job.hpp"
 
 namespace cv { namespace iib {

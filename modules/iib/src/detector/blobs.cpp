@@ -117,7 +117,7 @@ private:
     {
         const Octave& octave = *part.octave;
         ScaleSpace space(normalized, octave, part.first);
-        const DetectorKernels& kernels = detectorKernels();
+        const FilterKernels& kernels = filterKernels();
         const int last = (int)octave.sigmas.size() - 1;
         std::vector<int> columns(octave.size.width);
         float least = threshold;  // rises once there are more than maxFeatures

@@ -2,10 +2,10 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
+#include "../common/detector_file.hpp"
 #include "../common/file_numbers.hpp"
 #include "../common/image_input.hpp"
 #include "../normalization/local_normalization.hpp"
-#include "detector_file.hpp"
 
 #include "opencv2/core/utils/trace.hpp"
 #include "opencv2/iib/detail/files.hpp"

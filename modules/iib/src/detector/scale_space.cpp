@@ -4,8 +4,6 @@
 
 #include "scale_space.hpp"
 
-#include "../normalization/kernels/kernels.hpp"
-
 namespace cv { namespace iib {
 
 namespace {
@@ -51,7 +49,7 @@ Octave::Octave(const std::vector<double>& scales, int begin_, int end_, bool hal
 }
 
 ScaleSpace::ScaleSpace(const Mat& normalized_, const Octave& octave_, int first_)
-    : kernels(detectorKernels()), normalized(normalized_), octave(octave_), first(first_), next(first_ - 2),
+    : kernels(filterKernels()), normalized(normalized_), octave(octave_), first(first_), next(first_ - 2),
       reach(0), pixels(Size(normalized_.cols, octave_.halved ? 4 : 0), 2, true),
       ahead(octave_.steps.size() + 1, 0), earliest(octave_.steps.size() + 1, first_ - 1)
 {
@@ -118,7 +116,7 @@ void ScaleSpace::readRow(int y, short* out)
         pixels.repeatEnds(i, normalized.cols, 2);
         rows[i] = row;
     }
-    normalizationKernels().halveShorts(rows, out, octave.size.width);
+    kernels.halveShorts(rows, out, octave.size.width);
 }
 
 void ScaleSpace::makeRow(size_t image, int y)

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "kernels/kernels.hpp"
+#include "../normalization/kernels/kernels.hpp"
 
 #include <array>
 
@@ -48,7 +48,7 @@ private:
     void makeRow(size_t image, int y);
     void makeResponses(int y);
 
-    const DetectorKernels& kernels;
+    const FilterKernels& kernels;
     const Mat& normalized;
     const Octave& octave;
     const int first;

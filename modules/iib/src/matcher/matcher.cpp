@@ -3,10 +3,11 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../common/file_numbers.hpp"
-#include "../common/outputs.hpp"
 #include "index_file.hpp"
 #include "parameters.hpp"
 #include "search.hpp"
+
+#include "opencv2/iib/detail/outputs.hpp"
 
 namespace cv { namespace iib {
 

@@ -2,7 +2,7 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "pair_scan.hpp"
+#include "search.hpp"
 
 namespace cv { namespace iib {
 
@@ -100,25 +100,15 @@ private:
     std::vector<uchar> flags;
 };
 
-//! Calls report(query, train, distance) for the pairs of a chunk that are below a threshold of HammingSink.
-template <class Report>
+//! Calls report(query, train, distance) for the pairs of a chunk that are below a threshold.
 void scanPruned(const SearchInput& input, PairChunks& chunk, const int* queryThresholds,
-        const int* trainThresholds, const Report& report)
+        const int* trainThresholds, const PairReport& report)
 {
-    struct Sink CV_FINAL : public HammingSink
-    {
-        Sink(const int* ofQueries, const int* ofTrains, const Report& report_)
-            : HammingSink(ofQueries, ofTrains), report(report_)
-        {
-        }
-        void found(int query, int train, int distance) CV_OVERRIDE { report(query, train, distance); }
-        const Report& report;
-    } sink(queryThresholds, trainThresholds, report);
     const std::vector<PruneStage>& stages = input.policy.stages;
     const CodeLayout& layout = input.trains.layout();
     std::vector<int64> passed(stages.size(), 0);
-    const PrunedScan scan = {
-            chunk.pairs, input.policy, sink, passed.data(), stages.size() == 1 ? chunk.limitsOfQueries() : 0};
+    const PrunedScan scan = {chunk.pairs, input.policy, queryThresholds, trainThresholds, report,
+            passed.data(), stages.size() == 1 ? chunk.limitsOfQueries() : 0};
     input.trains.kernels().pruned(scan);
 
     input.cost.all += (uint64)chunk.pairCount * 8 * layout.bytes();

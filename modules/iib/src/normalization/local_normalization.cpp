@@ -38,7 +38,7 @@ class Normalizer
 {
 public:
     Normalizer(const Mat& grey_, double sigma)
-        : kernels(normalizationKernels()), grey(grey_), blurs(sigma), size(grey.size()), factor(0)
+        : kernels(filterKernels()), grey(grey_), blurs(sigma), size(grey.size()), factor(0)
     {
         sizes.push_back(size);
         for (int i = 0; i < blurs.levels; i++)
@@ -228,7 +228,7 @@ private:
         kernels.upsample(between.row(0), out, width);
     }
 
-    const NormalizationKernels& kernels;
+    const FilterKernels& kernels;
     const Mat& grey;
     const Blurs blurs;
     const Size size;          //!< of the image

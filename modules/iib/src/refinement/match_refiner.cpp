@@ -6,36 +6,17 @@
 
 #include "../common/geometry.hpp"
 #include "../common/image_input.hpp"
-#include "../normalization/local_normalization.hpp"
 
 namespace cv { namespace iib {
 
 namespace {
 
-const double NORMALIZATION_SIGMA = 8;
 const double LARGEST_SPACING = 1.25;  //!< pixels from one sample to the next
 const double SAME_SIZE = 1.1;
 const int SAME_ROTATION = 10;              //!< degrees: smaller rotations need no start place of their own
 const size_t VOTING_MATCHES = 64;          //!< for the rotation; every two of them vote
 const double LEAST_START_SIMILARITY = .4;  //!< of guided matches, most of which are wrong and end here
 const double MATCHES_OF_A_THREAD = 8;
-
-Mat checked(InputArray image, const char* name)
-{
-    const Mat pixels = image.getMat();
-    if (pixels.empty())
-        CV_Error(Error::StsBadArg,
-                format("%s is empty, but there are matches: did imread find the file?", name));
-    checkImage(pixels);
-    return pixels;
-}
-
-void checkIndex(const std::vector<KeyPoint>& keypoints, int index, int image)
-{
-    if (index < 0 || (size_t)index >= keypoints.size())
-        CV_Error(Error::StsOutOfRange, format("a match is of keypoint %d of image %d, which has %d", index,
-                                               image, (int)keypoints.size()));
-}
 
 bool hasAngle(const KeyPoint& keypoint) { return keypoint.angle >= 0; }
 
@@ -54,27 +35,6 @@ struct MatchRefiner::Start
     }
 };
 
-PreparedImage::PreparedImage(InputArray image)
-    : pixels(preparedForAlignment(
-              normalizeLocally(integerMap(checked(image, "the image")), NORMALIZATION_SIGMA)))
-{
-}
-
-PreparedPair::PreparedPair(InputArray image1, InputArray image2, const std::vector<DMatch>& matches)
-{
-    if (matches.empty())
-        return;
-    const Mat pixels[] = {checked(image1, "image 1"), checked(image2, "image 2")};
-    const auto prepare = [&](const Range& range) {
-        for (int i = range.start; i < range.end; i++)
-            images[i] = PreparedImage(pixels[i]);
-    };
-    if (getNumThreads() > 2)
-        prepare(Range(0, 2));  // one image after the other, on all threads
-    else
-        parallel_for_(Range(0, 2), prepare);
-}
-
 MatchRefiner::MatchRefiner(const PreparedImage& image1, const PreparedImage& image2,
         const std::vector<KeyPoint>& keypoints1, const std::vector<KeyPoint>& keypoints2,
         const std::vector<DMatch>& matches)
@@ -84,8 +44,8 @@ MatchRefiner::MatchRefiner(const PreparedImage& image1, const PreparedImage& ima
     checkKeyPoints(second, true);
     for (const DMatch& match : matches)
     {
-        checkIndex(first, match.queryIdx, 1);
-        checkIndex(second, match.trainIdx, 2);
+        positionOf(first, match.queryIdx, 1);
+        positionOf(second, match.trainIdx, 2);
     }
     rotation = rotationOf(matches);
 }

@@ -60,12 +60,4 @@ private:
 void propagate(const MatchRefiner& refiner, const std::vector<KeyPoint>& keypoints1,
         const std::vector<KeyPoint>& keypoints2, std::vector<Refinement>& matches);
 
-//! The images of a pair, checked and prepared; empty without matches.
-struct PreparedPair
-{
-    PreparedImage images[2];
-
-    PreparedPair(InputArray image1, InputArray image2, const std::vector<DMatch>& matches);
-};
-
 }}  // namespace cv::iib

@@ -2,14 +2,49 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#include "../common/outputs.hpp"
+#include "../common/image_input.hpp"
+#include "../normalization/local_normalization.hpp"
 #include "match_refiner.hpp"
 
+#include "opencv2/iib/detail/outputs.hpp"
 #include "opencv2/iib/refinement.hpp"
+
+#include <array>
 
 namespace cv { namespace iib {
 
 namespace {
+
+const double NORMALIZATION_SIGMA = 8;
+
+Mat checked(InputArray image, const char* name)
+{
+    const Mat pixels = image.getMat();
+    if (pixels.empty())
+        CV_Error(Error::StsBadArg,
+                format("%s is empty, but there are matches: did imread find the file?", name));
+    checkImage(pixels);
+    return pixels;
+}
+
+//! The images of a pair, checked and prepared; empty without matches.
+std::array<PreparedImage, 2> prepared(
+        InputArray image1, InputArray image2, const std::vector<DMatch>& matches)
+{
+    std::array<PreparedImage, 2> images;
+    if (matches.empty())
+        return images;
+    const Mat pixels[] = {checked(image1, "image 1"), checked(image2, "image 2")};
+    const auto prepare = [&](const Range& range) {
+        for (int i = range.start; i < range.end; i++)
+            images[i] = PreparedImage(pixels[i]);
+    };
+    if (getNumThreads() > 2)
+        prepare(Range(0, 2));  // one image after the other, on all threads
+    else
+        parallel_for_(Range(0, 2), prepare);
+    return images;
+}
 
 void write(const std::vector<Refinement>& matches, const std::vector<KeyPoint>& keypoints1,
         OutputArray points1, OutputArray points2, OutputArray covariances, OutputArray similarities)
@@ -40,13 +75,19 @@ std::vector<Refinement> refined(const MatchRefiner& refiner, const std::vector<D
 
 }  // namespace
 
+PreparedImage::PreparedImage(InputArray image)
+    : pixels(preparedForAlignment(
+              normalizeLocally(integerMap(checked(image, "the image")), NORMALIZATION_SIGMA)))
+{
+}
+
 void refineMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1, InputArray image2,
         const std::vector<KeyPoint>& keypoints2, const std::vector<DMatch>& matches1to2, OutputArray points1,
         OutputArray points2, OutputArray covariances, OutputArray similarities)
 {
-    const PreparedPair pair(image1, image2, matches1to2);
-    refineMatches(pair.images[0], keypoints1, pair.images[1], keypoints2, matches1to2, points1, points2,
-            covariances, similarities);
+    const std::array<PreparedImage, 2> pair = prepared(image1, image2, matches1to2);
+    refineMatches(pair[0], keypoints1, pair[1], keypoints2, matches1to2, points1, points2, covariances,
+            similarities);
 }
 
 void refineMatches(const PreparedImage& image1, const std::vector<KeyPoint>& keypoints1,
@@ -64,9 +105,9 @@ void propagateMatches(InputArray image1, const std::vector<KeyPoint>& keypoints1
         const std::vector<KeyPoint>& keypoints2, std::vector<DMatch>& matches1to2, OutputArray points1,
         OutputArray points2, OutputArray covariances, OutputArray similarities)
 {
-    const PreparedPair pair(image1, image2, matches1to2);
-    propagateMatches(pair.images[0], keypoints1, pair.images[1], keypoints2, matches1to2, points1, points2,
-            covariances, similarities);
+    const std::array<PreparedImage, 2> pair = prepared(image1, image2, matches1to2);
+    propagateMatches(pair[0], keypoints1, pair[1], keypoints2, matches1to2, points1, points2, covariances,
+            similarities);
 }
 
 void propagateMatches(const PreparedImage& image1, const std::vector<KeyPoint>& keypoints1,

@@ -151,8 +151,8 @@ double estimateRotation(const std::vector<KeyPoint>& keypoints1, const std::vect
     std::vector<Point2d> from, to;
     for (const DMatch& m : matches)
     {
-        from.push_back(positionOf(keypoints1, m.queryIdx));
-        to.push_back(positionOf(keypoints2, m.trainIdx));
+        from.push_back(positionOf(keypoints1, m.queryIdx, 1));
+        to.push_back(positionOf(keypoints2, m.trainIdx, 2));
     }
     const size_t n = from.size();
     const size_t offsets = n < 2 ? 0 : std::min(n - 1, std::max(MAX_VOTES / n, (size_t)1));

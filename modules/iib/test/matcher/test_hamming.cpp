@@ -10,22 +10,6 @@ namespace opencv_test { namespace {
 typedef std::vector<int> Levels;
 typedef std::map<std::pair<int, int>, int> Distances;  // of (query, train code)
 
-struct AllPairs : public HammingSink
-{
-    Distances distances;
-    AllPairs(const int* queryThresholds_, const int* trainThresholds_)
-        : HammingSink(queryThresholds_, trainThresholds_)
-    {
-    }
-    void found(int query, int train, int distance) CV_OVERRIDE
-    {
-        const Distances::const_iterator next = distances.lower_bound(std::make_pair(query, train));
-        EXPECT_TRUE(next == distances.end() || next->first.first > query)
-                << "train codes not in ascending order";
-        distances[std::make_pair(query, train)] = distance;
-    }
-};
-
 //! Everything a scan needs.
 struct ScanData
 {
@@ -103,10 +87,15 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
                     ScanData data(bytes, queryCount, 16 + queryCount * 5);
                     std::fill(data.queryThresholds.begin(), data.queryThresholds.end(), below);
                     data.trainThresholds[3] = bytes * 8 + 1;
-                    Distances expected;
-                    AllPairs sink(
-                            data.queryThresholds.data(), bothDirections ? data.trainThresholds.data() : 0);
-                    data.kernels.pruned({data.pairs(), PruningPolicy(), sink, 0, 0});
+                    Distances expected, actual;
+                    const auto found = [&](int query, int train, int distance) {
+                        const Distances::const_iterator next = actual.lower_bound({query, train});
+                        EXPECT_TRUE(next == actual.end() || next->first.first > query)
+                                << "train codes not in ascending order";
+                        actual[{query, train}] = distance;
+                    };
+                    data.kernels.pruned({data.pairs(), PruningPolicy(), data.queryThresholds.data(),
+                            bothDirections ? data.trainThresholds.data() : 0, found, 0, 0});
                     for (int q = 0; q < queryCount; q++)
                         for (int t = 0; t < data.trains.rows; t++)
                         {
@@ -115,9 +104,8 @@ TEST(IIB_Hamming, scan_as_the_naive_loop)
                             if (distance < below || (bothDirections && t == 3))
                                 expected[std::make_pair(q, t)] = distance;
                         }
-                    ASSERT_EQ(expected, sink.distances)
-                            << bytes << " bytes, " << queryCount << " queries, below " << below
-                            << ", both directions " << bothDirections;
+                    ASSERT_EQ(expected, actual) << bytes << " bytes, " << queryCount << " queries, below "
+                                                << below << ", both directions " << bothDirections;
                 }
 }
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "kernels.hpp"
-#include "more_mappings.hpp"
+#include "mappings.hpp"
 #include "vectors.simd.hpp"
 
 namespace cv { namespace iib {
@@ -264,6 +264,35 @@ void writeLevel(const CellGrid<Cell>& cells, const LevelShape& shape, const Cell
         if (!shape.chosen[i].none())
             writePhase<Mapping, false>(cells, shape, edges, i, parents, out);
 }
+
+// Mappings that the paper does not have.
+
+//! Left > right, top > bottom, main > other diagonal.
+struct HaarMapping
+{
+    static constexpr int BITS = 3;
+
+    template <typename V, typename Put> static void map(const V x[4], const Put& put)
+    {
+        put(0, x[0] + x[2] > x[1] + x[3]);
+        put(1, x[0] + x[1] > x[2] + x[3]);
+        put(2, x[0] + x[3] > x[1] + x[2]);
+    }
+};
+
+//! Each cell > the next, around the quad.
+struct PairwiseMapping
+{
+    static constexpr int BITS = 4;
+
+    template <typename V, typename Put> static void map(const V x[4], const Put& put)
+    {
+        put(0, x[0] > x[1]);
+        put(1, x[1] > x[3]);
+        put(2, x[3] > x[2]);
+        put(3, x[2] > x[0]);
+    }
+};
 
 //! In the order of IIB::Mapping.
 template <typename Cell> BitsKernels<Cell> bitsKernels()

@@ -4,10 +4,8 @@
 
 #pragma once
 
-#include <numeric>
-
 #include "../../common/aligned_buffer.hpp"
-#include "../../common/bit_io.hpp"
+#include "chosen_bits.hpp"
 #include "opencv2/iib/detail/places.hpp"
 
 namespace cv { namespace iib {
@@ -77,57 +75,6 @@ struct QuadPhase
 
     int lanes() const { return quads * GROUP_CHANNELS; }
     int planeBytes() const { return (lanes() + CHUNK - 1) / CHUNK * (CHUNK / 8); }
-};
-
-//! The bits in use of a phase (paper, "Reduction of the IIB Descriptor Size"), in their order.
-class ChosenBits
-{
-public:
-    //! Up to SIZE bits within SIZE bytes of comparisons.
-    struct Group
-    {
-        static constexpr int SIZE = 16;
-        size_t byte;  //!< the first byte
-        int count;
-        uchar places[SIZE];  //!< byte of each bit, relative to the first; 128: no bit
-        uchar masks[SIZE];   //!< the bit in its byte; 1: no bit
-    };
-
-    //! @param masks a bit for each comparison of the phase, in the order of comparisons.
-    explicit ChosenBits(const std::vector<uint64>& masks)
-        : whole(std::count(masks.begin(), masks.end(), ~(uint64)0) == (ptrdiff_t)masks.size())
-    {
-        for (size_t bit = 0; bit < 64 * masks.size(); bit++)
-        {
-            if (!(masks[bit / 64] >> bit % 64 & 1))
-                continue;
-            const size_t byte = bit / 8;
-            if (none() || chosen.back().count == Group::SIZE || byte - chosen.back().byte >= Group::SIZE)
-            {
-                Group next = {byte, 0, {}, {}};
-                std::fill_n(next.places, (int)Group::SIZE, (uchar)128);
-                std::fill_n(next.masks, (int)Group::SIZE, (uchar)1);
-                chosen.push_back(next);
-            }
-            Group& group = chosen.back();
-            group.places[group.count] = (uchar)(byte - group.byte);
-            group.masks[group.count++] = (uchar)(1 << bit % 8);
-        }
-    }
-
-    bool none() const { return chosen.empty(); }
-    int count() const
-    {
-        return std::accumulate(chosen.begin(), chosen.end(), 0,
-                [](int bits, const Group& group) { return bits + group.count; });
-    }
-    //! Whether all comparisons are in use: then the descriptor is a copy of them.
-    bool all() const { return whole; }
-    const std::vector<Group>& groups() const { return chosen; }
-
-private:
-    bool whole;
-    std::vector<Group> chosen;
 };
 
 //! A level of a group of channels.

@@ -144,20 +144,6 @@ void imageChannelRows(
     }
 }
 
-//! The last vector may overlap the one before, so that nothing past the last pixel is read.
-void widenRow(const uchar* in, short* out, int width)
-{
-    constexpr int N = VTraits<v_int16>::max_nlanes;
-    const auto widen = [&](int x) { v_store(out + x, v_reinterpret_as_s16(vx_load_expand(in + x))); };
-    for (int x = 0; x <= width - N; x += N)
-        widen(x);
-    if (width >= N)
-        widen(width - N);
-    else
-        for (int x = 0; x < width; x++)
-            out[x] = in[x];
-}
-
 template <typename Pixel, typename T> void widenRow(const Pixel* in, T* out, int width)
 {
     for (int x = 0; x < width; x++)

@@ -99,19 +99,6 @@ inline v_uint32 repeatLastFour(const v_uint32& v)
 #endif
 }
 
-//! The values eight lanes further on. @param next the vector behind `values`.
-inline v_int16 eightBehind(const v_int16& values, const v_int16& next)
-{
-#if CV_AVX512_SKX
-    return v_int16(_mm512_alignr_epi64(next.val, values.val, 2));
-#elif CV_AVX2
-    return v_int16(_mm256_permute2x128_si256(values.val, next.val, 0x21));
-#else
-    (void)values;
-    return next;
-#endif
-}
-
 /* Stores groups of four lanes, every other one to `even` and to `odd`; `lane` counts the lanes that were stored before,
  and a vector may be as small as one. */
 inline void storeAlternately(unsigned* even, unsigned* odd, int lane, const v_int32& v)

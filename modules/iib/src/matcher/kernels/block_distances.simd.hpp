@@ -10,7 +10,7 @@
 #include "../../common/aligned_buffer.hpp"
 #include "../../common/vectors.simd.hpp"
 
-#include "opencv2/iib/detail/code_layout.hpp"
+#include "opencv2/iib/detail/packed_codes.hpp"
 
 namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN

@@ -3,7 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../../precomp.hpp"
-#include "opencv2/iib/detail/code_layout.hpp"
+#include "opencv2/iib/detail/packed_codes.hpp"
 
 #include <cstring>
 

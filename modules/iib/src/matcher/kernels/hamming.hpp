@@ -4,10 +4,11 @@
 
 #pragma once
 
-#include "opencv2/iib/detail/code_layout.hpp"
+#include "opencv2/iib/detail/packed_codes.hpp"
 
 #include <algorithm>
 #include <climits>
+#include <functional>
 #include <vector>
 
 namespace cv { namespace iib {
@@ -57,22 +58,6 @@ struct NearestScan
     size_t firstQuery, firstTrain;  //!< added to indices in keys
 };
 
-//! Receives the pairs whose distance is below the threshold of the query or of the train code.
-struct HammingSink
-{
-    //! @param trainThresholds_ with room for whole CodeBlocks, or null.
-    HammingSink(const int* queryThresholds_, const int* trainThresholds_)
-        : queryThresholds(queryThresholds_), trainThresholds(trainThresholds_)
-    {
-    }
-    virtual ~HammingSink() {}
-    //! Indices count from the scan's first query and train code. May lower the thresholds.
-    virtual void found(int query, int train, int distance) = 0;
-
-    const int* const queryThresholds;
-    const int* const trainThresholds;
-};
-
 //! A point within codes at which a scan may drop a pair.
 struct PruneStage
 {
@@ -93,12 +78,17 @@ struct PruningPolicy
     int margin = -1;      //!< if >= 0, lowers a query's limit to its least partial distance plus this
 };
 
-//! Finds all pairs below the sink's thresholds that no stage drops.
+//! Receives a pair of a scan. Indices count from the scan's first query and train code.
+typedef std::function<void(int query, int train, int distance)> PairReport;
+
+//! Finds all pairs that are below the threshold of the query or of the train code, and that no stage drops.
 struct PrunedScan
 {
     CodePairs pairs;
     const PruningPolicy& policy;
-    HammingSink& sink;
+    const int* queryThresholds;  //!< calls of `found` may lower them
+    const int* trainThresholds;  //!< as many, with room for whole CodeBlocks; or null
+    const PairReport& found;
     int64* passed;  //!< for each stage, the scan adds the pairs that pass it
     int* limits;    //!< with a single stage, PruningPolicy::limit of each query; else null
 };

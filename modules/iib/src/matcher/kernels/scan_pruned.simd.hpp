@@ -5,7 +5,7 @@
 #pragma once
 
 #include "../../common/aligned_buffer.hpp"
-#include "scanner.simd.hpp"
+#include "scan_nearest.simd.hpp"
 
 namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
@@ -121,7 +121,7 @@ inline int countDifferences(const unsigned* a, const unsigned* b, int words)
     return count;
 }
 
-//! Drops pairs at the stages of a scan, and reports those below the sink's thresholds.
+//! Drops pairs at the stages of a scan, and reports those below the thresholds.
 class PrunedScanner : public Scanner
 {
 public:
@@ -170,8 +170,8 @@ private:
         for (int v = 0; v < VECTORS; v++)
         {
             distances[v] = lists.load(q, block, v);
-            Counts threshold = vx_setall_s32(scan.sink.queryThresholds[query]);
-            if (const int* ofTrains = scan.sink.trainThresholds)
+            Counts threshold = vx_setall_s32(scan.queryThresholds[query]);
+            if (const int* ofTrains = scan.trainThresholds)
                 threshold = v_max(threshold, vx_load(ofTrains + block * CODES_PER_BLOCK + v * WIDTH));
             slack[v] = distances[v] - threshold;
         }
@@ -180,7 +180,7 @@ private:
             return;
         storeLanes(near, distances, lanes);
         for (int i = 0; lanes; lanes &= lanes - 1)
-            scan.sink.found(query, block * CODES_PER_BLOCK + trailingZeros32(lanes), near[i++]);
+            scan.found(query, block * CODES_PER_BLOCK + trailingZeros32(lanes), near[i++]);
     }
 
     //! Stores the distances up to a stage, or to the end; NEVER for dropped pairs. Counts the pairs that pass stage
@@ -264,14 +264,12 @@ private:
             if (stage + 1 < stageCount)
                 scan.passed[stage + 1] += count;
         }
-        HammingSink& sink = scan.sink;
         const int *list = lists.list(q), *distance = lists.distances(q),
-                  *queryThreshold = sink.queryThresholds + query;
-        const int* trainThresholds = sink.trainThresholds;
+                  *queryThreshold = scan.queryThresholds + query, *trainThresholds = scan.trainThresholds;
         for (int i = 0; i < count; i++)
             if (distance[list[i]] < *queryThreshold ||
                     (trainThresholds && distance[list[i]] < trainThresholds[list[i]]))
-                sink.found(query, list[i], distance[list[i]]);
+                scan.found(query, list[i], distance[list[i]]);
     }
 
     //! Compares the pairs of a list from a stage to the next; returns the number left.

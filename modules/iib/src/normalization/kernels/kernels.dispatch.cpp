@@ -7,9 +7,6 @@
 
 namespace cv { namespace iib {
 
-const NormalizationKernels& normalizationKernels()
-{
-    CV_CPU_DISPATCH(normalizationKernels, (), CV_CPU_DISPATCH_MODES_ALL);
-}
+const FilterKernels& filterKernels() { CV_CPU_DISPATCH(filterKernels, (), CV_CPU_DISPATCH_MODES_ALL); }
 
 }}  // namespace cv::iib

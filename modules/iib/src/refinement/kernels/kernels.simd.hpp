@@ -23,10 +23,7 @@ static_assert(PATCH % INTS == 0 && PATCH_SAMPLES % SHORTS == 0, "vectors fit row
 void smooth(const uchar* const rows[3], ushort* sums, uchar* out, int width)
 {
     int x = 0;
-    for (; x <= width - SHORTS; x += SHORTS)
-        v_store(sums + 1 + x, vx_load_expand(rows[0] + x) + vx_load_expand(rows[2] + x) +
-                                      (vx_load_expand(rows[1] + x) << 1));
-    for (; x < width; x++)
+    for (; x < width; x++)  // compilers make vectors of it
         sums[1 + x] = (ushort)(rows[0][x] + 2 * rows[1][x] + rows[2][x]);
     sums[0] = sums[1];
     sums[width + 1] = sums[width];

@@ -120,9 +120,9 @@ void scanPruned(const PrunedScan& scan)
         {
             const int distance =
                     distances[train] + pairs.distance(query, train, words, scan.pairs.layout.words());
-            if (distance < scan.sink.queryThresholds[query] ||
-                    (scan.sink.trainThresholds && distance < scan.sink.trainThresholds[train]))
-                scan.sink.found(query, train, distance);
+            if (distance < scan.queryThresholds[query] ||
+                    (scan.trainThresholds && distance < scan.trainThresholds[train]))
+                scan.found(query, train, distance);
         }
     }
 }

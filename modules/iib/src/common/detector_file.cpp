@@ -4,7 +4,7 @@
 
 #include "detector_file.hpp"
 
-#include "../common/file_numbers.hpp"
+#include "file_numbers.hpp"
 
 namespace cv { namespace iib {
 

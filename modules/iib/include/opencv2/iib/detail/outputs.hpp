@@ -2,11 +2,14 @@
 // It is subject to the license terms in the LICENSE file found in the top-level directory
 // of this distribution and at http://opencv.org/license.html.
 
-#pragma once
+#ifndef OPENCV_IIB_DETAIL_OUTPUTS_HPP
+#define OPENCV_IIB_DETAIL_OUTPUTS_HPP
 
-#include "../precomp.hpp"
+#include "opencv2/core.hpp"
 
 namespace cv { namespace iib {
+
+//! @cond IGNORED
 
 /** Writes rows of numbers to a matrix, converted to its type if that is fixed, or to a vector whose elements are rows, such
  as std::vector<Point2f>. */
@@ -19,4 +22,8 @@ inline void writeRows(const Mat& rows, OutputArray out)
             .convertTo(out, type);  // OpenCV 4.14 needs the type for an empty matrix
 }
 
+//! @endcond
+
 }}  // namespace cv::iib
+
+#endif
