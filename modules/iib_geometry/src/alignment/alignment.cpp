@@ -4,7 +4,6 @@
 #include "../common/points.hpp"
 #include "../verdict/support.hpp"
 #include "../views/view_search.hpp"
-#include "corner_errors.hpp"
 #include "judgement.hpp"
 
 namespace cv::iib {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "corner_errors.hpp"
-
 #include "../pose/uncertainty.hpp"
+#include "judgement.hpp"
 
 namespace cv::iib {
 namespace {

@@ -21,16 +21,10 @@ Matx33d simplified(const Matx33d& model, int kind)
 {
     if (kind == ALIGN_HOMOGRAPHY)
         return model;
-    Matx33d affine = affineAt(model, Point2d());
+    const Matx33d affine = affineAt(model, Point2d());
     if (kind == ALIGN_TRANSLATION)
-        affine(0, 0) = affine(1, 1) = 1, affine(0, 1) = affine(1, 0) = 0;
-    else if (kind == ALIGN_SIMILARITY)
-    {
-        affine(0, 0) = affine(1, 1) = (affine(0, 0) + affine(1, 1)) / 2;
-        affine(1, 0) = (affine(1, 0) - affine(0, 1)) / 2;
-        affine(0, 1) = -affine(1, 0);
-    }
-    return affine;
+        return {1, 0, affine(0, 2), 0, 1, affine(1, 2), 0, 0, 1};
+    return kind == ALIGN_SIMILARITY ? similarityOf(affine) : affine;
 }
 
 //! Log likelihood that the richer transform gains on each match.
@@ -97,7 +91,7 @@ FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const Ma
             fit.scale = scale;
     }
     polish(problem, Loss{fit.scale}, finely, fit.model);
-    finish(problem, fit);
+    problem.squaredErrors(fit.model, fit.squared);
     limit = 3 * std::max(fit.scale, REFINED);
     agree = within(limit, fit.squared);
 }
@@ -121,18 +115,6 @@ bool FittedTransform::isSignificant(const Evidence& evidence) const
                    problem.sampleSize(), {.5 * limit, limit, 2 * limit, 4 * limit}) +
                    std::log10((double)evidence.tried) <
            Verdict::CERTAIN;
-}
-
-AlignedPoints marked(const AlignedPoints& points, const Verdict::Marks& marks)
-{
-    AlignedPoints some;
-    for (size_t i = 0; i < marks.size(); i++)
-        if (marks[i])
-        {
-            some.reference.push_back(points.reference.row((int)i));
-            some.image.push_back(points.image.row((int)i));
-        }
-    return some;
 }
 
 std::vector<FittedTransform> fittedTransforms(const Evidence& evidence, int model)

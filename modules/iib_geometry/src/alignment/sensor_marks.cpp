@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sensor_marks.hpp"
-
-#include "../precomp.hpp"
 #include "opencv2/imgproc.hpp"
+#include "judgement.hpp"
 
 namespace cv::iib {
 namespace {
@@ -23,8 +21,7 @@ bool isMark(const Mat& image, const Point2d& point)
     for (int k = -ring; k <= ring; k++)
         for (const Point& p : {Point(k, -ring), Point(k, ring), Point(-ring, k), Point(ring, k)})
             around.push_back(image.at<float>(at + p));
-    std::nth_element(around.begin(), around.begin() + around.size() / 2, around.end());
-    const Mat heights = abs(image(Rect(at.x - 3, at.y - 3, 7, 7)) - around[around.size() / 2]);
+    const Mat heights = abs(image(Rect(at.x - 3, at.y - 3, 7, 7)) - median(around));
     double height;
     minMaxLoc(heights(Rect(2, 2, 3, 3)), nullptr, &height);
     return countNonZero(heights > height / 4) <= MOST_PIXELS;

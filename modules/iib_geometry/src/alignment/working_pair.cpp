@@ -21,6 +21,18 @@ Point2d rowOf(const Mat& points, int i) { return points.at<Vec2d>(i); }
 
 }  // namespace
 
+AlignedPoints marked(const AlignedPoints& points, const std::vector<bool>& marks)
+{
+    AlignedPoints some;
+    for (size_t i = 0; i < marks.size(); i++)
+        if (marks[i])
+        {
+            some.reference.push_back(points.reference.row((int)i));
+            some.image.push_back(points.image.row((int)i));
+        }
+    return some;
+}
+
 WorkingPair::WorkingPair(
         const ImageViews& reference, const ImageViews& image, int workingSize, bool sameScale)
     : images_{&reference, &image}
@@ -156,12 +168,7 @@ SharedPart WorkingPair::sharedPart(int which, const AlignedPoints& points, const
 
 std::vector<Point2d> WorkingPair::imageCorners() const
 {
-    const Size size = images_[1]->size();
-    const double right = size.width - 1, bottom = size.height - 1;
-    std::vector<Point2d> corners;
-    for (const Point2d& corner : {Point2d(), Point2d(right, 0), Point2d(right, bottom), Point2d(0, bottom)})
-        corners.push_back(moved(described_[1]->fromImage, corner));
-    return corners;
+    return cornersAround(images_[1]->size(), described_[1]->fromImage, 0);
 }
 
 Mat WorkingPair::sameView() const
@@ -184,17 +191,15 @@ double WorkingPair::inPixels(double distance) const
 
 Mat WorkingPair::inPixels(const AlignedPoints& points, const std::vector<bool>& agree) const
 {
-    Mat both[2], all, result(0, 4, CV_32F);
-    if (points.reference.empty())
-        return result;
-    perspectiveTransform(points.reference.reshape(2), both[0], described_[0]->fromImage.inv());
-    perspectiveTransform(points.image.reshape(2), both[1], described_[1]->fromImage.inv());
+    const AlignedPoints some = marked(points, agree);
+    Mat both[2], all(0, 4, CV_32F);
+    if (some.reference.empty())
+        return all;
+    perspectiveTransform(some.reference.reshape(2), both[0], described_[0]->fromImage.inv());
+    perspectiveTransform(some.image.reshape(2), both[1], described_[1]->fromImage.inv());
     hconcat(both[0].reshape(1), both[1].reshape(1), all);
     all.convertTo(all, CV_32F);
-    for (int i = 0; i < all.rows; i++)
-        if (agree[i])
-            result.push_back(all.row(i));
-    return result;
+    return all;
 }
 
 }  // namespace cv::iib

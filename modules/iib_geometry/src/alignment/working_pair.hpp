@@ -14,6 +14,9 @@ struct AlignedPoints
     std::vector<KeyPoint> keypoints[2];  //!< all keypoints of both images
 };
 
+//! The marked matches, without keypoints.
+AlignedPoints marked(const AlignedPoints& points, const std::vector<bool>& marks);
+
 /** Two images, the views in which they are matched, and the refinement of their matches at full size. Working pixels are pixels of the
 views. */
 class WorkingPair

@@ -1,9 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "opencv2/core.hpp"
 
 namespace cv::iib {
+
+inline double square(double x) { return x * x; }
+
+//! The median; 0 if `values` is empty.
+template <typename T> T median(std::vector<T> values)
+{
+    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return values.empty() ? T() : *middle;
+}
 
 /** A caller's points as N x 2, CV_64F.
 @throws cv::Exception that names the function and the argument if the array does not hold points. */

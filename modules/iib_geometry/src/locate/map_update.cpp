@@ -130,7 +130,7 @@ void addPoints(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
                 if (touched.count(ray.point) != 0)
                     matched.rays.push_back(ray);
     }
-    triangulate(map, matched.rays, matched.links);
+    triangulate(map, std::move(matched.rays), std::move(matched.links));
 }
 
 //! Keeps the MAX_ADDED most recently used of the added images at one place.
@@ -187,29 +187,16 @@ Location MapUpdate::add(
         const std::string& name, InputArray image, const Camera& camera, int orientation, InputArray mask)
 {
     const Photograph photograph(image.getMat(), orientation, mask.getMat());
-    {
-        const std::lock_guard<std::mutex> lock(impl_->mutex);
-        impl_->checkOpen();
-        checkName(name);
-        if (!impl_->names.insert(name).second)
-            CV_Error(Error::StsBadArg, "an image named '" + name + "' is already a part of the update");
-    }
-    try
-    {
-        LocatedImage found = impl_->locator.find(photograph, camera);
-        found.features.name = name;
-        const std::lock_guard<std::mutex> lock(impl_->mutex);
-        impl_->checkOpen();
-        if (found.location.found)
-            impl_->seen.push_back(found);
-        return asStored(found.location, photograph);
-    }
-    catch (...)
-    {
-        const std::lock_guard<std::mutex> lock(impl_->mutex);
-        impl_->names.erase(name);
-        throw;
-    }
+    LocatedImage found = impl_->locator.find(photograph, camera);
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
+    impl_->checkOpen();
+    checkName(name);
+    if (!impl_->names.insert(name).second)
+        CV_Error(Error::StsBadArg, "an image named '" + name + "' is already a part of the update");
+    found.features.name = name;
+    if (found.location.found)
+        impl_->seen.push_back(found);
+    return asStored(found.location, photograph);
 }
 
 MapUpdate::Counts MapUpdate::commit()
@@ -245,7 +232,7 @@ MapUpdate::Counts MapUpdate::commit()
     addPoints(map, pairsOf(map, first, added));
     makeRoom(map, added);
     map.compact();
-    impl_->folder.write(map);
+    impl_->folder.write(std::move(map));
     impl_->committed = true;
     return counts;
 }

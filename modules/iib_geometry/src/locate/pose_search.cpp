@@ -60,10 +60,9 @@ std::vector<Match> mostSimilar(const std::vector<Match>& matches)
 class PoseSearch
 {
 public:
-    PoseSearch(const std::vector<Match>& all, const Map& map, PreparedPictures& pictures,
-            const Camera& camera, LocatedImage& found)
+    PoseSearch(const std::vector<Match>& all, const Map& map, PreparedPictures& pictures, LocatedImage& found)
         : map_(map), views_{map, pictures, found.prepared}, found_(found), location_(found.location),
-          frame_(all), lens_(camera), limit_(limitOf(camera)), all_(all)
+          frame_(all), lens_(found.features.camera), limit_(limitOf(found.features.camera)), all_(all)
     {
         for (Match& m : all_)
             m.point = frame_.toLocal(m.point);
@@ -235,10 +234,10 @@ int countInliers(const std::vector<Match>& all, const Camera& camera)
     return keypointsOf(within(limitOf(camera), matches, lens, pose));
 }
 
-void findPose(const std::vector<Match>& matches, const Map& map, PreparedPictures& pictures,
-        const Camera& camera, LocatedImage& found)
+void findPose(
+        const std::vector<Match>& matches, const Map& map, PreparedPictures& pictures, LocatedImage& found)
 {
-    PoseSearch search(matches, map, pictures, camera, found);
+    PoseSearch search(matches, map, pictures, found);
     if (search.byKeypoints() && search.byGuidedMatches() && search.byLines() && search.isCertain())
         search.writeResult();
 }

@@ -27,7 +27,7 @@ std::vector<Ray> raysOf(size_t number, const PosedImage& image);
 struct RayMatch
 {
     float bits;
-    size_t a, b;
+    uint32_t a, b;
 };
 
 //! The result of matching pairs of images.

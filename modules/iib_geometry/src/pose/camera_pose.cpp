@@ -14,8 +14,8 @@ namespace {
 
 constexpr int ROUNDS = 20;
 constexpr int CLUSTERS = 4;  // across and down the area that the matches span in the image
-constexpr double LEAST_CURVATURE =
-        1e-12;  // smallest over largest eigenvalue of the curvature: below, the pose is not determined
+// Smallest over largest eigenvalue of the curvature: below, the pose is not determined.
+constexpr double LEAST_CURVATURE = 1e-12;
 
 }  // namespace
 
@@ -37,13 +37,8 @@ std::vector<LinearMatch> linearize(const std::vector<Match>& matches, const Lens
             continue;
         // derivatives by the point, in the world's axes
         const Matx23d byMoved = matches[i].errorProjection * byPoint[i] * rotation;
-        const Matx23d byTurn = byMoved * crossProduct(Vec3d(points[i]) - centre);
-        for (int row = 0; row < 2; row++)
-            for (int column = 0; column < 3; column++)
-            {
-                found[i].byPose(row, column) = -byMoved(row, column);
-                found[i].byPose(row, 3 + column) = byTurn(row, column);
-            }
+        setBlock(found[i].byPose, 0, 0, -byMoved);
+        setBlock(found[i].byPose, 0, 3, byMoved * crossProduct(Vec3d(points[i]) - centre));
         found[i].error = {error.x, error.y};
         found[i].weight = weight;
     }
@@ -63,15 +58,6 @@ std::vector<Point3d> pointsOf(const std::vector<Match>& matches)
     for (const Match& m : matches)
         points.push_back(m.point);
     return points;
-}
-
-double median(std::vector<double> values)
-{
-    if (values.empty())
-        return 0;
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 double distance(const Affine3d& a, const Affine3d& b, double depth)
@@ -110,11 +96,8 @@ Affine3d Frame::toWorld(const Affine3d& cameraFromLocal) const
 
 Matx66d Frame::toWorld(const Matx66d& covariance) const
 {
-    Matx66d scaled = covariance;
-    for (int i = 0; i < 6; i++)
-        for (int k = 0; k < 6; k++)
-            scaled(i, k) *= (i < 3 ? unit : 1) * (k < 3 ? unit : 1);
-    return scaled;
+    const Matx66d scale = Matx66d::diag({unit, unit, unit, 1, 1, 1});
+    return scale * covariance * scale;
 }
 
 std::vector<Point3d> inCamera(const std::vector<Point3d>& points, const Affine3d& pose)
@@ -157,16 +140,13 @@ double deviationOf(const std::vector<double>& errors) { return median(errors) / 
 
 bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, Affine3d& pose)
 {
-    std::vector<Point2d> pixels, seen;
-    for (const Match& m : matches)
-        seen.push_back(m.pixel);
+    std::vector<Point2d> pixels;
     std::vector<Point3d> points;
-    const std::vector<Point2d> straight = lens.undistorted(seen);
-    for (size_t i = 0; i < matches.size(); i++)
-        if (std::isfinite(straight[i].x))
+    for (const Match& m : matches)
+        if (const Point2d straight = lens.undistorted({m.pixel})[0]; std::isfinite(straight.x))
         {
-            pixels.push_back(straight[i]);
-            points.push_back(matches[i].point);
+            pixels.push_back(straight);
+            points.push_back(m.point);
         }
     if (points.size() < 4)
         return false;

@@ -44,6 +44,7 @@ public:
             const RelativePose& pose, const Matx33d& essential, int first, int second, double farthest) const;
     //! Parallax in pixels: the match's distance from a point at infinity, shared by both images as in Sampson's error.
     double parallax(const RelativePose& pose, int first, int second) const;
+    std::vector<double> parallaxes(const RelativePose& pose) const;
 
     /** Parallaxes of all matches under the rotation that minimizes those of the matches within a limit. A small rotation can look
     like a sideways translation, and this removes that part.

@@ -4,7 +4,7 @@
 #include "pose_fit.hpp"
 #include "../common/points.hpp"
 #include "uncertainty.hpp"
-#include "../verdict/pose_verdict.hpp"
+#include "../verdict/pose_tests.hpp"
 
 namespace cv::iib {
 namespace {
@@ -17,18 +17,11 @@ const double ONE_DIRECTION = 1;   // radians: if two possible t differ by more, 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {
     const Mat given = matrix.getMat();
-    bool good = given.dims == 2 && given.rows == 3 && given.cols == 3 && given.channels() == 1 &&
-                (given.depth() == CV_32F || given.depth() == CV_64F);
     Matx33d K;
-    if (good)
-    {
-        Mat doubles;
-        given.convertTo(doubles, CV_64F);
-        K = Matx33d(doubles);
-        good = checkRange(doubles) && K(0, 0) > 0 && K(1, 1) > 0 && K(0, 1) == 0 && K(1, 0) == 0 &&
-               K(2, 0) == 0 && K(2, 1) == 0 && K(2, 2) == 1;
-    }
-    if (!good)
+    if (given.size() == Size(3, 3) && (given.type() == CV_32F || given.type() == CV_64F))
+        given.convertTo(K, CV_64F);
+    if (!checkRange(K) || !(K(0, 0) > 0 && K(1, 1) > 0) ||
+            K != Matx33d(K(0, 0), 0, K(0, 2), 0, K(1, 1), K(1, 2), 0, 0, 1))
         CV_Error(Error::StsBadArg, format("findRelativePose: %s must be 3 x 3, CV_32F or CV_64F, [fx 0 cx; 0 "
                                           "fy cy; 0 0 1] in pixels, with "
                                           "fx and fy over 0",
@@ -103,10 +96,7 @@ PoseErrors estimateErrors(
     const bool hasDirection = isDirectionCertain(
             fit.squared, problem.leastParallaxes(fit.model, fit.squared, limit), limit, verdict, -1);
     // This test is milder: it does not minimize the parallaxes by a rotation first.
-    std::vector<double> parallaxes;
-    for (int i = 0; i < problem.size(); i++)
-        parallaxes.push_back(problem.parallax(fit.model, i, i));
-    const bool hasParallax = isDirectionCertain(fit.squared, parallaxes, limit, verdict);
+    const bool hasParallax = isDirectionCertain(fit.squared, problem.parallaxes(fit.model), limit, verdict);
     if (!hasDirection)
         errors.covariance += anyDirection;
     const Square<EpipolarProblem::Step> expected = errors.covariance.inv(DECOMP_SVD);

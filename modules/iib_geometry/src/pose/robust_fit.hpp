@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "../common/parallel.hpp"
-#include "opencv2/core.hpp"
+#include "../common/points.hpp"
 
 namespace cv::iib {
 
@@ -45,8 +43,6 @@ template <class Step> struct Row
 };
 
 template <class Step> using Square = Matx<double, Step::channels, Step::channels>;
-
-inline double square(double x) { return x * x; }
 
 //! Adds weight J J' to the lower triangle of a sum.
 template <class Step> void addProduct(const Step& J, double weight, Square<Step>& sum)
@@ -120,7 +116,6 @@ template <class Problem> struct Fit
     double scale = 0;             //!< of the loss that the model was polished under, pixels
     std::vector<double> squared;  //!< errors of the matches, pixels^2; empty if there is no model
     int samples = 0;              //!< number of samples that were tried
-    double inlierRatio = 0;       //!< share of the matches within three scales
 };
 
 /** Searches for models that many matches agree with. Deterministic.
@@ -264,16 +259,6 @@ private:
     int samples_ = 0;
 };
 
-//! Fills in the errors of a fit's model and its inlier ratio.
-template <class Problem> void finish(const Problem& problem, Fit<Problem>& fit)
-{
-    problem.squaredErrors(fit.model, fit.squared);
-    const double near = FARTHEST * square(fit.scale);
-    const auto count =
-            std::count_if(fit.squared.begin(), fit.squared.end(), [&](double e) { return e < near; });
-    fit.inlierRatio = (double)count / std::max(problem.size(), 1);
-}
-
 /** The scale, in pixels, of the errors below a distance, from their median (Rousseeuw and Leroy 1987).
 @param parameters of the model, which reduce the degrees of freedom.
 @param least lower bound of the result. */
@@ -287,9 +272,7 @@ inline double scaleWithin(
     const double free = (double)near.size() - parameters;
     if (free <= 0)
         return std::max(distance / 3, least);
-    const auto middle = near.begin() + near.size() / 2;
-    std::nth_element(near.begin(), middle, near.end());
-    return std::max(1.4826 * std::sqrt(*middle * near.size() / free), least);
+    return std::max(1.4826 * std::sqrt(median(near) * near.size() / free), least);
 }
 
 /** The same, and whether the errors below the distance look like those of right matches: most are far below it, and few are just
@@ -350,7 +333,7 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem)
     if (fit.squared.empty())
         return fit;
     polish(problem, Loss{fit.scale}, finely, fit.model);
-    finish(problem, fit);
+    problem.squaredErrors(fit.model, fit.squared);
     return fit;
 }
 

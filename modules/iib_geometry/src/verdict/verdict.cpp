@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "verdict.hpp"
 
-#include <algorithm>
 #include <bitset>
 #include <cmath>
 #include <limits>
@@ -11,12 +10,9 @@
 #include "../precomp.hpp"
 #include "opencv2/iib/verdict.hpp"
 #include "opencv2/imgproc.hpp"
-#include "../common/points.hpp"
 
 namespace cv::iib {
 namespace {
-
-double square(double x) { return x * x; }
 
 const int CELLS = 32;           // of the diagonal of what the points span
 const double CERTAINLY = 1e-3;  // chance
@@ -188,8 +184,7 @@ double Verdict::logFalseAlarms(const Marks& all, const Marks& agreeing, int samp
                                         logBinomial(k, sampleSize) + (k - sampleSize) * std::log10(each)
                               : std::numeric_limits<double>::infinity();
     };
-    const auto count = [](const Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); };
-    double most = of(count(all), count(agreeing), chance);
+    double most = of(countOf(all), countOf(agreeing), chance);
     for (int image = 0; image < 2; image++)
         most = std::max(
                 most, of(places(all, image), places(agreeing, image), chanceOfPlaces(all, chance, image)));

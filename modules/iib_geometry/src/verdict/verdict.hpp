@@ -2,9 +2,8 @@
 #pragma once
 
 #include <functional>
-#include <vector>
 
-#include "opencv2/core.hpp"
+#include "../common/points.hpp"
 
 namespace cv::iib {
 
@@ -87,5 +86,7 @@ std::vector<double> errorsOfWrongMatches(
 
 //! Which squared errors are below limit^2.
 Verdict::Marks within(double limit, const std::vector<double>& squared);
+
+inline int countOf(const Verdict::Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); }
 
 }  // namespace cv::iib

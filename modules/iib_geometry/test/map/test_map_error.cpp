@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "pose/camera_pose.hpp"
-#include "map/map_error.hpp"
 #include "map/triangulation.hpp"
 #include "../test_precomp.hpp"
 

@@ -5,7 +5,6 @@
 #include "../derivatives.hpp"
 #include "pose/epipolar_problem.hpp"
 #include "pose/five_points.hpp"
-#include "pose/real_roots.hpp"
 #include "two_cameras.hpp"
 
 namespace opencv_test { namespace {
@@ -159,7 +158,6 @@ TEST(RelativePose, hopeless_matches_get_the_most_samples)
     const Fit<HopelessProblem> fit = robustFit(problem);
     EXPECT_EQ(10000, problem.trials);
     EXPECT_EQ(10000, fit.samples);
-    EXPECT_DOUBLE_EQ(2 / 10000., fit.inlierRatio);
 }
 
 //! A model is a random number seeded by its sample, so the result depends on every sample that was tried.

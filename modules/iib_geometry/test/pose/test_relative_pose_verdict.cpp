@@ -2,7 +2,7 @@
 
 #include "pose/pose_fit.hpp"
 #include "two_cameras.hpp"
-#include "verdict/pose_verdict.hpp"
+#include "verdict/pose_tests.hpp"
 
 // Which poses are accepted, and their estimated errors.
 namespace opencv_test { namespace {

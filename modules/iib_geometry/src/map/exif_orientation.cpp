@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "upright.hpp"
+#include "exif_orientation.hpp"
 
 #include "../pose/lens.hpp"
 
