@@ -91,18 +91,14 @@ TEST(RelativePose, is_found_among_wrong_matches)
         for (int trial = 0; trial < 10; trial++)
         {
             const RelativePose truth = randomPose(random, trial % 2 ? .3 : .02);
-            const Views views(random, truth, 200, wrong, .2);
-            Mat R, t, inliers;
-            ASSERT_TRUE(
-                    findRelativePose(views.points1, views.points2, Mat(CAMERA), Mat(CAMERA), R, t, inliers));
-            EXPECT_EQ(CV_64F, R.type());
-            EXPECT_EQ(Size(1, 3), t.size());
-            EXPECT_NEAR(1, cv::norm(t), 1e-12);
-            EXPECT_NEAR(0, cv::norm(Matx33d(R) * Matx33d(R).t() - Matx33d::eye()), 1e-12);
-            EXPECT_LT(cv::norm(stepBetween({R, Vec3d(t)}, truth)), .03) << wrong << ' ' << trial;
-            ASSERT_EQ(Size(1, 200), inliers.size());
-            EXPECT_GT(countNonZero(inliers.rowRange(wrong, 200)), .85 * (200 - wrong));
-            EXPECT_LE(countNonZero(inliers.rowRange(0, wrong)), 10);
+            const PoseResult found(Views(random, truth, 200, wrong, .2));
+            ASSERT_TRUE(found.found) << found.reason;
+            EXPECT_NEAR(1, cv::norm(found.pose.t), 1e-12);
+            EXPECT_NEAR(0, cv::norm(found.pose.R * found.pose.R.t() - Matx33d::eye()), 1e-12);
+            EXPECT_LT(cv::norm(found.error(truth)), .03) << wrong << ' ' << trial;
+            ASSERT_EQ(Size(1, 200), found.inliers.size());
+            EXPECT_GT(countNonZero(found.inliers.rowRange(wrong, 200)), .85 * (200 - wrong));
+            EXPECT_LE(countNonZero(found.inliers.rowRange(0, wrong)), 10);
         }
 }
 
@@ -210,18 +206,17 @@ TEST(RelativePose, one_match_far_away_changes_little)
     RNG random(12);
     const RelativePose truth = randomPose(random, .1);
     Views views(random, truth, 300, 20, .2);
-    Mat R, t, covariance, withFar;
-    ASSERT_TRUE(
-            findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, covariance));
+    const PoseResult before(views);
     views.points1.at<Vec2d>(0) = views.points2.at<Vec2d>(0) = Vec2d(5e4, -2e4);
-    ASSERT_TRUE(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, withFar));
-    EXPECT_LT(cv::norm(stepBetween({R, Vec3d(t)}, truth)), .03);
-    EXPECT_NEAR(1, std::sqrt(cv::trace(withFar)[0] / cv::trace(covariance)[0]), .5);
+    const PoseResult withFar(views);
+    ASSERT_TRUE(before.found && withFar.found);
+    EXPECT_LT(cv::norm(withFar.error(truth)), .03);
+    EXPECT_NEAR(1, std::sqrt(cv::trace(withFar.covariance) / cv::trace(before.covariance)), .5);
     for (double scale : {1e-200, 1e-3})  // raised to .1
     {
-        ASSERT_TRUE(findRelativePose(
-                views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), scale, covariance));
-        EXPECT_LT(std::sqrt(cv::trace(covariance)[0]), .2);
+        const PoseResult narrow(views, scale);
+        ASSERT_TRUE(narrow.found);
+        EXPECT_LT(std::sqrt(cv::trace(narrow.covariance)), .2);
     }
 }
 
@@ -232,6 +227,8 @@ TEST(RelativePose, takes_columns_of_a_matrix_and_gives_fixed_sizes)
     Mat both, R, t;
     hconcat(views.points1, views.points2, both);
     ASSERT_TRUE(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t));
+    EXPECT_EQ(CV_64F, R.type());
+    EXPECT_EQ(Size(1, 3), t.size());
     Matx33d fixedR;
     Vec3d fixedT;
     Matx<double, 5, 5> covariance;
@@ -261,23 +258,17 @@ TEST(RelativePose, too_few_matches_are_no_pose)
 TEST(RelativePose, degenerate_matches_give_a_reason_or_a_large_deviation)
 {
     const Mat one(50, 2, CV_32F, Scalar(100));
-    Mat line(50, 2, CV_32F), R, t, covariance;
+    Mat line(50, 2, CV_32F);
     for (int i = 0; i < 50; i++)
         line.at<Point2f>(i) = Point2f(10.f * i, 5.f * i);
-    String reason;
-    EXPECT_FALSE(findRelativePose(one, one, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), .25, covariance,
-            &reason));  // all points are the same
-    EXPECT_FALSE(reason.empty());
+    const PoseResult same(one, one, .25), still(line, line, .25);
+    EXPECT_FALSE(same.found || same.reason.empty()) << "all points are the same";
+    EXPECT_EQ(still.found, still.reason.empty());
     // The camera did not move and the points are on a line: rotation about the line and t are undetermined.
-    if (findRelativePose(line, line, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), .25, covariance, &reason))
-    {
-        Mat values;
-        ASSERT_TRUE(checkRange(R) && checkRange(t) && checkRange(covariance));
-        eigen(covariance, values);
-        EXPECT_GT(values.at<double>(1), 1);
-    }
-    else
-        EXPECT_FALSE(reason.empty());
+    Vec<double, 5> values = Vec<double, 5>::all(2);
+    if (still.found)
+        eigen(still.covariance, values);
+    EXPECT_GT(values[1], 1);
 }
 
 // Also for large rotations and large angles between directions.

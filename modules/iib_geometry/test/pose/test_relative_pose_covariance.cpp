@@ -21,14 +21,9 @@ struct Coverage
         for (int trial = 0; trial < trials; trial++)
         {
             const RelativePose truth = randomPose(random, .2);
-            const Views views = viewsOf(truth);
-            RelativePose pose;
-            Matx<double, 5, 5> covariance;
-            if (!findRelativePose(views.points1, views.points2, CAMERA, CAMERA, pose.R, pose.t, noArray(),
-                        scale, covariance))
-                continue;
-            const Vec<double, 5> error = stepBetween(pose, truth);
-            squared.push_back(error.dot(covariance.inv() * error));
+            const PoseResult result(viewsOf(truth), scale);
+            if (result.found)
+                squared.push_back(result.squared(truth));
         }
     }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pose/two_views.hpp"
 #include "../test_precomp.hpp"
+#include "pose/two_views.hpp"
 
 namespace opencv_test {
 
@@ -71,6 +71,42 @@ struct Views
         }
     }
     Mat points1, points2;
+};
+
+//! The result of findRelativePose with CAMERA twice.
+struct PoseResult
+{
+    RelativePose pose;
+    Matx<double, 5, 5> covariance;
+    Mat inliers;
+    String reason;
+    bool found;
+
+    PoseResult(InputArray points1, InputArray points2, double scale = 0, const Matx33d& camera1 = CAMERA,
+            const Matx33d& camera2 = CAMERA)
+        : found(cv::iib::findRelativePose(
+                  points1, points2, camera1, camera2, pose.R, pose.t, inliers, scale, covariance, &reason))
+    {
+    }
+    explicit PoseResult(const Views& views, double scale = 0)
+        : PoseResult(views.points1, views.points2, scale)
+    {
+    }
+
+    //! The step from the pose to the true one.
+    Vec<double, 5> error(const RelativePose& truth) const { return stepBetween(pose, truth); }
+    //! The error's squared Mahalanobis length.
+    double squared(const RelativePose& truth) const
+    {
+        return error(truth).dot(covariance.inv() * error(truth));
+    }
+    Matx22d ofDirection() const { return covariance.get_minor<2, 2>(3, 3); }
+    //! Whether the true direction of t is inside the region of 95 %.
+    bool hasDirection(const RelativePose& truth) const
+    {
+        const Vec2d off(error(truth).val + 3);
+        return off.dot(ofDirection().inv() * off) < 5.99;
+    }
 };
 
 //! Random points of an image, N x 2, CV_64F.

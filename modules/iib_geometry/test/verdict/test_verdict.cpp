@@ -36,15 +36,10 @@ TEST(Verdict, random_matches_have_no_pose)
     for (int count : {5, 6, 10, 20, 50, 100, 300})
         for (int trial = 0; trial < (count < 100 ? 6 : 2); trial++)
         {
-            const Views views(random, randomPose(random, .2), count, count, 0);
-            Mat R, t, inliers, covariance;
-            String reason;
-            EXPECT_FALSE(findRelativePose(views.points1, views.points2, Mat(CAMERA), Mat(CAMERA), R, t,
-                    inliers, 0, covariance, &reason))
-                    << count;
-            EXPECT_TRUE(R.empty() && t.empty() && covariance.empty());
-            EXPECT_FALSE(reason.empty());
-            EXPECT_EQ(count, inliers.rows);
+            const PoseResult result(Views(random, randomPose(random, .2), count, count, 0));
+            EXPECT_FALSE(result.found) << count;
+            EXPECT_FALSE(result.reason.empty());
+            EXPECT_EQ(count, result.inliers.rows);
         }
 }
 
@@ -70,12 +65,10 @@ TEST(Verdict, right_matches_of_a_skyline_a_small_image_and_a_wide_scale_have_a_p
     const Matx33d small(80, 0, 40, 0, 80, 30, 0, 0, 1), large(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
     const RelativePose pose = cv::iib::moved({Matx33d::eye(), Vec3d(.6, .8, 0)}, {.02, .03, .01, 0, 0});
     RNG random(17);
-    Mat R, t;
     for (int count : {20, 50, 100, 400})
     {
         const Mat a = anywhere(random, count, 640, 480);
-        EXPECT_TRUE(findRelativePose(a, seenAgain(random, a, CAMERA, CAMERA, pose, .2), CAMERA, CAMERA, R, t))
-                << count;
+        EXPECT_TRUE(PoseResult(a, seenAgain(random, a, CAMERA, CAMERA, pose, .2)).found) << count;
     }
     for (int count : {100, 400})
         for (double height : {2., 5.})
@@ -84,19 +77,19 @@ TEST(Verdict, right_matches_of_a_skyline_a_small_image_and_a_wide_scale_have_a_p
             for (int i = 0; i < count * 4 / 5; i++)
                 a.at<double>(i, 1) = 240 + random.gaussian(height);
             const Mat b = seenAgain(random, a, CAMERA, CAMERA, pose, .2), agree(count, 1, CV_8U, Scalar(1));
-            EXPECT_TRUE(findRelativePose(a, b, CAMERA, CAMERA, R, t)) << count << ' ' << height;
+            EXPECT_TRUE(PoseResult(a, b).found) << count << ' ' << height;
             EXPECT_LT(logFalseAlarms(a, b, agree, true, 1.5), -3) << count << ' ' << height;
         }
     for (int count : {200, 400})
     {
         const Mat a = anywhere(random, count, 80, 60), b = seenAgain(random, a, small, large, pose, .2);
-        EXPECT_TRUE(findRelativePose(a, b, small, large, R, t)) << count;
-        EXPECT_TRUE(findRelativePose(b, a, large, small, R, t)) << count;
+        EXPECT_TRUE(PoseResult(a, b, 0, small, large).found) << count;
+        EXPECT_TRUE(PoseResult(b, a, 0, large, small).found) << count;
     }
     for (double scale : {5., 20., 30.})
     {
         const Mat a = anywhere(random, 300, 640, 480), b = seenAgain(random, a, CAMERA, CAMERA, pose, 3);
-        EXPECT_TRUE(findRelativePose(a, b, CAMERA, CAMERA, R, t, noArray(), scale)) << scale;
+        EXPECT_TRUE(PoseResult(a, b, scale).found) << scale;
     }
 }
 
@@ -114,12 +107,12 @@ TEST(Verdict, wrong_matches_of_a_skyline_or_a_strip_have_no_pose)
                 for (int i = 0; i < count * 4 / 5; i++)
                     image.at<double>(i, 1) = 240 + random.gaussian(height);
             }
-            Mat R, t, agree(count, 1, CV_8U, Scalar(1));
-            EXPECT_FALSE(findRelativePose(points[0], points[1], Mat(CAMERA), Mat(CAMERA), R, t)) << count;
+            Mat agree(count, 1, CV_8U, Scalar(1));
+            EXPECT_FALSE(PoseResult(points[0], points[1]).found) << count;
             Mat F = findFundamentalMat(points[0], points[1], USAC_MAGSAC, 1.5, .9999, 10000, agree);
             EXPECT_GT(logFalseAlarms(points[0], points[1], agree, true, 1.5), -3) << count;
             const Mat a = anywhere(random, count, 640, 8), b = anywhere(random, count, 640, 8);
-            EXPECT_FALSE(findRelativePose(a, b, Mat(CAMERA), Mat(CAMERA), R, t)) << count;
+            EXPECT_FALSE(PoseResult(a, b).found) << count;
         }
 }
 
@@ -131,9 +124,8 @@ TEST(Verdict, wrong_matches_of_a_small_image_and_a_large_one_have_no_pose)
     for (int count : {200, 400})
     {
         const Mat a = anywhere(random, count, 80, 60), b = anywhere(random, count, 4000, 3000);
-        Mat R, t;
-        EXPECT_FALSE(findRelativePose(a, b, Mat(small), Mat(large), R, t)) << count;
-        EXPECT_FALSE(findRelativePose(b, a, Mat(large), Mat(small), R, t)) << count;
+        EXPECT_FALSE(PoseResult(a, b, 0, small, large).found) << count;
+        EXPECT_FALSE(PoseResult(b, a, 0, large, small).found) << count;
     }
     const Mat second = anywhere(random, 300, 640, 480), first = anywhere(random, 300, 640, 480);
     EXPECT_GT(logFalseAlarms(first, second, Mat::ones(300, 1, CV_8U), true, 1e4), 0);
@@ -146,8 +138,7 @@ TEST(Verdict, wrong_matches_have_no_pose_at_wide_scales)
         for (int count : {30, 300})
         {
             const Mat a = anywhere(random, count, 640, 480), b = anywhere(random, count, 640, 480);
-            Mat R, t;
-            EXPECT_FALSE(findRelativePose(a, b, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), scale)) << scale;
+            EXPECT_FALSE(PoseResult(a, b, scale).found) << scale;
         }
 }
 
