@@ -41,7 +41,7 @@ std::vector<double> gains(const FittedTransform& richer, const FittedTransform& 
 //! ENOUGH of the matches or more.
 AlignedPoints thinned(const AlignedPoints& points)
 {
-    Verdict::Marks some(points.image.rows);
+    Verdict::Marks some(points.image.size());
     for (size_t i = 0; i < some.size(); i += std::max<size_t>(some.size() / ENOUGH, 1))
         some[i] = true;
     return marked(points, some);
@@ -70,7 +70,6 @@ FittedTransform::FittedTransform(const AlignedPoints& points, int kind)
 FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const Matx33d& from, double scale)
     : model(kind), problem(points.reference, points.image, kind), limit(3 * REFINED), agree(problem.size())
 {
-    const double roughly = 1e-3, finely = 1e-9;
     if (problem.size() < problem.sampleSize())
         return;
     fit.model = simplified(problem.fromPixels(from), kind);
@@ -80,17 +79,17 @@ FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const Ma
         scale = REFINED;
     }
     for (; scale > REFINED; scale /= 2)
-        polish(problem, Loss{scale}, roughly, fit.model);
+        polish(problem, Loss{scale}, ROUGHLY, fit.model);
     bool found = false;
     for (scale = REFINED; !found && scale <= 2 * REFINED; scale *= 2)
     {
-        polish(problem, Loss{scale}, roughly, fit.model);
+        polish(problem, Loss{scale}, ROUGHLY, fit.model);
         problem.squaredErrors(fit.model, fit.squared);
         found = findScale(fit.squared, FARTHEST_OF_CHOICE * scale, problem.parameters(), fit.scale);
         if (!found)
             fit.scale = scale;
     }
-    polish(problem, Loss{fit.scale}, finely, fit.model);
+    polish(problem, Loss{fit.scale}, FINELY, fit.model);
     problem.squaredErrors(fit.model, fit.squared);
     limit = 3 * std::max(fit.scale, REFINED);
     agree = within(limit, fit.squared);

@@ -33,7 +33,7 @@ bool areOfTheSensor(const FittedTransform& fitted, const Evidence& evidence)
 {
     const AlignedPoints agreeing = marked(evidence.points, fitted.agree);
     if (agreeing.reference.empty() ||
-            !(norm(mean(Mat(agreeing.reference - agreeing.image).reshape(2))) < STILL))
+            !(norm(mean(Mat(Mat(agreeing.reference) - Mat(agreeing.image)))) < STILL))
         return false;
     Mat image = evidence.pair.sameView();
     if (image.empty())
@@ -42,8 +42,8 @@ bool areOfTheSensor(const FittedTransform& fitted, const Evidence& evidence)
         cvtColor(image, image, image.channels() == 4 ? COLOR_BGRA2GRAY : COLOR_BGR2GRAY);
     image.convertTo(image, CV_32F);
     double marks = 0, larger = 0, allMarks = 1, allLarger = 1;
-    for (int i = 0; i < agreeing.reference.rows; i++)
-        (isMark(image, agreeing.reference.at<Point2d>(i)) ? marks : larger)++;
+    for (const Point2d& point : agreeing.reference)
+        (isMark(image, point) ? marks : larger)++;
     if (marks < LEAST_MARKS * (marks + larger))
         return false;
     for (const KeyPoint& keypoint : evidence.points.keypoints[0])

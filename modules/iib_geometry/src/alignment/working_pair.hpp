@@ -7,10 +7,10 @@
 
 namespace cv::iib {
 
-//! Refined matches of two images, N x 2 each, CV_64F, in working pixels.
+//! Refined matches of two images, in working pixels.
 struct AlignedPoints
 {
-    Mat reference, image;
+    Points reference, image;
     std::vector<KeyPoint> keypoints[2];  //!< all keypoints of both images
 };
 

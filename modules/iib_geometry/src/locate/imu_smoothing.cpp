@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "../pose/camera_pose.hpp"
-#include "../pose/two_views.hpp"
 #include "imu_motion.hpp"
 
 namespace cv::iib {

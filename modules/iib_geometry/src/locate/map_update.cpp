@@ -25,12 +25,10 @@ bool atOnePlace(const LocatedImage& seen, const PosedImage& other)
 //! Counts the misses of each code that this update expected to see. Returns the number of dropped codes.
 int countMisses(Map& map, const std::vector<LocatedImage>& all)
 {
-    std::vector<std::vector<uchar>> expected, hit;
+    std::vector<std::vector<uchar>> expected;
     for (const MapImage& image : map.images)
-    {
-        expected.emplace_back(image.sees.size(), uchar(0));
-        hit.emplace_back(image.sees.size(), uchar(0));
-    }
+        expected.emplace_back(image.sees.size());
+    std::vector<std::vector<uchar>> hit = expected;
     for (const LocatedImage& seen : all)
     {
         const Rect2d picture(Point2d(-.5, -.5), Size2d(seen.features.camera.size));
@@ -90,10 +88,9 @@ std::vector<const LocatedImage*> imagesToAdd(const Map& map, const std::vector<L
 
 /** Pairs of images to match: each added image with the map's images it was compared with, and added images near it.
 @param first index of the first added image; added images are the map's last. */
-std::vector<std::pair<size_t, size_t>> pairsOf(
-        const Map& map, size_t first, const std::vector<const LocatedImage*>& added)
+Pairs pairsOf(const Map& map, size_t first, const std::vector<const LocatedImage*>& added)
 {
-    std::vector<std::pair<size_t, size_t>> pairs;
+    Pairs pairs;
     for (size_t n = 0; n < added.size(); n++)
     {
         std::vector<std::pair<double, size_t>> near;
@@ -111,7 +108,7 @@ std::vector<std::pair<size_t, size_t>> pairsOf(
 }
 
 //! Matches the added images of a map and triangulates their points.
-void addPoints(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
+void addPoints(Map& map, const Pairs& pairs)
 {
     MatchedRays matched = matchPairs(map.images, pairs);
     std::set<size_t> involved;

@@ -79,8 +79,7 @@ std::vector<DMatch> greedyMatches(const std::vector<int>& lines, const Mat& code
 
 }  // namespace
 
-void addLines(
-        Map& map, const std::vector<Segments>& segments, const std::vector<std::pair<size_t, size_t>>& pairs)
+void addLines(Map& map, const std::vector<Segments>& segments, const Pairs& pairs)
 {
     std::vector<Ray> rays;
     std::vector<size_t> first;

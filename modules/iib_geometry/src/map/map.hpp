@@ -50,10 +50,8 @@ Map readMap(const std::string& folder);
 Map makeMap(const std::string& model, const ImageReader& images, const MapOptions& options,
         const MappingReport& report);
 
-/** Estimates the map's own error by leave-one-out: its images' poses and calibration are never exact, and matches do
-not show this. Some images are located by the points that the other images triangulate. Their mean squared deviation
-from their poses in the map is the error. A few images do not span all directions, so an isotropic sample of their mean
-size is added.
+/** Estimates the map's own error by leave-one-out: the mean squared deviation of some images, located by the points that the others
+triangulate, from their poses in the map. A few images do not span all directions, so an isotropic sample of their mean size is added.
 @return covariance of a camera's centre, in units of the scene's distance, and of a rotation, both in the camera's axes;
 zeros if no point is seen by three images. */
 Matx66d mapError(const Map& map);

@@ -111,7 +111,7 @@ std::optional<Vec6d> poseErrorOf(const MapImage& image, std::vector<Match> match
         if (matches.size() < LEAST_POINTS || !refinePose(matches, lens, pose, covariance))
             return std::nullopt;
     }
-    const double depth = medianDistance(inCamera(pointsOf(matches), pose));
+    const double depth = medianDistance(inCamera(matches, pose));
     const Vec3d moved = known * inverse(pose).translation() * (1 / depth),
                 turned = Affine3d(known.rotation() * pose.rotation().t()).rvec();
     return Vec6d(moved[0], moved[1], moved[2], turned[0], turned[1], turned[2]);

@@ -21,8 +21,6 @@ constexpr size_t NEIGHBOURS = 20;        // images that each image is matched wi
 constexpr size_t MAX_TRACK = 30;         // images of a point that count as covisible
 constexpr double LEAST_CONSISTENT = .1;  // share of matches that fit the poses, if they are of these images
 
-typedef std::vector<std::pair<size_t, size_t>> Pairs;
-
 //! The number of points that each image shares with every other.
 std::vector<std::map<size_t, int>> countShared(const std::vector<PosedImage>& images)
 {

@@ -75,8 +75,8 @@ std::vector<Ray> raysOf(size_t number, const PosedImage& image)
     return rays;
 }
 
-MatchedRays matchPairs(const std::vector<MapImage>& images,
-        const std::vector<std::pair<size_t, size_t>>& pairs, const std::function<void()>& step)
+MatchedRays matchPairs(
+        const std::vector<MapImage>& images, const Pairs& pairs, const std::function<void()>& step)
 {
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
     MatchedRays found;

@@ -114,8 +114,13 @@ void refineTracks(std::vector<Track>& tracks, std::vector<MapImage>& images)
                 jobs[{reference.image, ray.image}].emplace_back(reference.keypoint, ray.keypoint);
     }
     std::vector<const decltype(jobs)::value_type*> list;
+    std::vector<std::atomic<int>> uses(images.size());
     for (const auto& job : jobs)
+    {
         list.push_back(&job);
+        for (size_t i : {job.first.first, job.first.second})
+            uses[i]++;
+    }
     PreparedPictures prepared(images.size());
     inParallel(list.size(), [&](size_t n) {
         const auto& [numbers, keypoints] = *list[n];
@@ -132,6 +137,9 @@ void refineTracks(std::vector<Track>& tracks, std::vector<MapImage>& images)
         refine(prepared.of(numbers.first, fixed.picture), prepared.of(numbers.second, moved.picture), pairs);
         for (size_t i = 0; i < keypoints.size(); i++)  // no other job writes these: a keypoint has one track
             moved.pixels[size_t(keypoints[i].second)] = pairs.moved[i].pt;
+        for (size_t i : {numbers.first, numbers.second})
+            if (--uses[i] == 0)
+                prepared.release(i);
     });
     std::vector<std::vector<Ray*>> rays(images.size());
     for (Track& track : tracks)

@@ -23,13 +23,12 @@ constexpr double LEAST_CURVATURE = 1e-12;
 // -R dc with the centre, and by R [X - c]x dw with the rotation.
 std::vector<LinearMatch> linearize(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
 {
-    const std::vector<Point3d> points = pointsOf(matches);
     std::vector<Matx23d> byPoint;
-    const std::vector<Point2d> mapped = lens.project(inCamera(points, pose), &byPoint);
+    const std::vector<Point2d> mapped = lens.project(inCamera(matches, pose), &byPoint);
     const Matx33d rotation = pose.rotation();
     const Vec3d centre = inverse(pose).translation();
-    std::vector<LinearMatch> found(points.size());
-    for (size_t i = 0; i < points.size(); i++)
+    std::vector<LinearMatch> found(matches.size());
+    for (size_t i = 0; i < matches.size(); i++)
     {
         const Point2d error = matches[i].errorProjection * (matches[i].pixel - mapped[i]);
         const double weight = 1 / (matches[i].deviation * matches[i].deviation + error.dot(error));
@@ -38,7 +37,7 @@ std::vector<LinearMatch> linearize(const std::vector<Match>& matches, const Lens
         // derivatives by the point, in the world's axes
         const Matx23d byMoved = matches[i].errorProjection * byPoint[i] * rotation;
         setBlock(found[i].byPose, 0, 0, -byMoved);
-        setBlock(found[i].byPose, 0, 3, byMoved * crossProduct(Vec3d(points[i]) - centre));
+        setBlock(found[i].byPose, 0, 3, byMoved * crossProduct(Vec3d(matches[i].point) - centre));
         found[i].error = {error.x, error.y};
         found[i].weight = weight;
     }
@@ -50,14 +49,6 @@ Affine3d moved(const Affine3d& pose, const Vec6d& step)
     const Vec3d centre = inverse(pose).translation() + Vec3d(step.val);
     const Matx33d rotation = pose.rotation() * Affine3d(-Vec3d(step.val + 3)).rotation();
     return {rotation, -(rotation * centre)};
-}
-
-std::vector<Point3d> pointsOf(const std::vector<Match>& matches)
-{
-    std::vector<Point3d> points;
-    for (const Match& m : matches)
-        points.push_back(m.point);
-    return points;
 }
 
 double distance(const Affine3d& a, const Affine3d& b, double depth)
@@ -108,9 +99,17 @@ std::vector<Point3d> inCamera(const std::vector<Point3d>& points, const Affine3d
     return moved;
 }
 
+std::vector<Point3d> inCamera(const std::vector<Match>& matches, const Affine3d& pose)
+{
+    std::vector<Point3d> moved;
+    for (const Match& m : matches)
+        moved.push_back(pose * m.point);
+    return moved;
+}
+
 std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
 {
-    const std::vector<Point2d> mapped = lens.project(inCamera(pointsOf(matches), pose));
+    const std::vector<Point2d> mapped = lens.project(inCamera(matches, pose));
     std::vector<double> errors;
     for (size_t i = 0; i < matches.size(); i++)
         errors.push_back(norm(matches[i].errorProjection * (mapped[i] - matches[i].pixel)));

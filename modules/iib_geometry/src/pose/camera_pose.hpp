@@ -94,9 +94,8 @@ double medianDistance(const std::vector<Point3d>& points);
 //! Standard deviation per coordinate, from the median length of errors, as of Rayleigh's distribution.
 double deviationOf(const std::vector<double>& errors);
 
-std::vector<Point3d> pointsOf(const std::vector<Match>& matches);
-
 //! Transforms points from the world's to the camera's axes.
 std::vector<Point3d> inCamera(const std::vector<Point3d>& points, const Affine3d& pose);
+std::vector<Point3d> inCamera(const std::vector<Match>& matches, const Affine3d& pose);
 
 }  // namespace cv::iib

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "../precomp.hpp"
 #include "five_points.hpp"
@@ -17,15 +16,11 @@ const double MOST_SCALE = .01;  // of the points' span: at wider scales, wrong p
 const double NOWHERE = 1e-300;  // avoids 0 / 0 at the epipoles
 const int STEPS = 6;            // five parameters, padded to an even number for vectorization
 
-std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
+Points directions(Points points, const Matx33d& camera)
 {
-    std::vector<Point2d> rays(points.rows);
-    for (int i = 0; i < points.rows; i++)
-    {
-        const double* p = points.ptr<double>(i);
-        rays[i] = Point2d((p[0] - camera(0, 2)) / camera(0, 0), (p[1] - camera(1, 2)) / camera(1, 1));
-    }
-    return rays;
+    for (Point2d& p : points)
+        p = {(p.x - camera(0, 2)) / camera(0, 0), (p.y - camera(1, 2)) / camera(1, 1)};
+    return points;
 }
 
 //! The rotation that best turns the first directions to the second ones, weighted (Kabsch 1976).
@@ -58,7 +53,7 @@ inline double squaredErrorOf(const Matx33d& E, const Vec4d& weights, const Point
 }  // namespace
 
 EpipolarProblem::EpipolarProblem(
-        const Mat& points1, const Mat& points2, const Matx33d& camera1, const Matx33d& camera2)
+        const Points& points1, const Points& points2, const Matx33d& camera1, const Matx33d& camera2)
     : first_(directions(points1, camera1)),
       second_(directions(points2, camera2)), pixels_{1 / camera2(0, 0), 1 / camera2(1, 1), 1 / camera1(0, 0),
                                                      1 / camera1(1, 1)}
@@ -402,8 +397,7 @@ std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
         }
         const double left =
                 1 - most * (noise(3, 3) + noise(4, 4)) / (square(r.J[3]) + square(r.J[4]) + NOWHERE);
-        // Indexed by how many of the two parameters belong to the direction: the share of the row that stays, and the share of its
-        // noise.
+        // The shares of the row and of its noise that stay, for entries with 0, 1 or 2 parameters of the direction.
         const double shares[] = {1, std::sqrt(std::max(left, 0.)), std::max(left, 0.)}, kept[] = {1, .5, .25};
         for (int a = 0; a < Step::channels; a++)
             for (int b = 0; b <= a; b++)

@@ -14,8 +14,9 @@ public:
     typedef RelativePose Model;
     typedef Vec<double, 5> Step;
 
-    //! Both N x 2, CV_64F, pixels; matrices of cameras without skew.
-    EpipolarProblem(const Mat& points1, const Mat& points2, const Matx33d& camera1, const Matx33d& camera2);
+    //! Points in pixels; matrices of cameras without skew.
+    EpipolarProblem(
+            const Points& points1, const Points& points2, const Matx33d& camera1, const Matx33d& camera2);
 
     //! The same problem with the marked matches only.
     EpipolarProblem subset(const std::vector<bool>& marks) const;
@@ -69,9 +70,9 @@ private:
     Vec3d planeOf(const RelativePose& pose, double scale) const;
     Row<Step> row(const Linear& linear, const Point2d& first, const Point2d& second) const;
 
-    std::vector<Point2d> first_, second_;  // directions, third coordinate 1
-    double pixels_[4];  // size of a pixel: 1 / focal lengths, of camera 2, then of camera 1
-    Vec4d weights_;     // their squares, which weight the four terms of Sampson's denominator
+    Points first_, second_;  // directions, third coordinate 1
+    double pixels_[4];       // size of a pixel: 1 / focal lengths, of camera 2, then of camera 1
+    Vec4d weights_;          // their squares, which weight the four terms of Sampson's denominator
     double mostScale_;
 };
 

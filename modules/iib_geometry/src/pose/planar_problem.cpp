@@ -12,23 +12,17 @@ const int STRIDE = 16;
 //! Before the horizon, the determinant of the derivatives by a point has the sign of det T.
 bool mirrors(const Matx33d& T) { return !(determinant(T) > 0); }
 
-Vec2d meanOf(const Mat& points)
+std::vector<Vec3d> transformed(const Points& points, const Matx33d& by)
 {
-    const Scalar mean = cv::mean(points.reshape(2));
-    return Vec2d(mean[0], mean[1]);
-}
-
-std::vector<Vec3d> transformed(const Mat& points, const Matx33d& by)
-{
-    std::vector<Vec3d> result(points.rows);
-    for (int i = 0; i < points.rows; i++)
-        result[i] = by * Vec3d(points.at<double>(i, 0), points.at<double>(i, 1), 1);
+    std::vector<Vec3d> result;
+    for (const Point2d& p : points)
+        result.push_back(by * Vec3d(p.x, p.y, 1));
     return result;
 }
 
 }  // namespace
 
-PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind)
+PlanarProblem::PlanarProblem(const Points& reference, const Points& image, int kind)
     : entries_{{0, 0, 2, 1}, {1, 1, 2, 1}}
 {
     if (kind == ALIGN_SIMILARITY)
@@ -40,10 +34,10 @@ PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind)
     if (image.empty())
         return;
     // one unit for both images, so that a translation stays a translation
-    const Vec2d from = meanOf(reference), to = meanOf(image);
+    const Scalar from = mean(reference), to = mean(image);
     double spread = 1;
-    for (int i = 0; i < image.rows; i++)
-        spread = std::max(spread, norm(image.at<Vec2d>(i) - to));
+    for (const Point2d& p : image)
+        spread = std::max(spread, norm(Vec2d(p.x - to[0], p.y - to[1])));
     fromReference_ = Matx33d(1 / spread, 0, -from[0] / spread, 0, 1 / spread, -from[1] / spread, 0, 0, 1);
     fromImage_ = Matx33d(1 / spread, 0, -to[0] / spread, 0, 1 / spread, -to[1] / spread, 0, 0, 1);
     reference_ = transformed(reference, fromReference_);

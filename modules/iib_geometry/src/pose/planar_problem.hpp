@@ -13,8 +13,8 @@ public:
     typedef Matx33d Model;
     typedef Vec<double, 8> Step;
 
-    //! Both N x 2, CV_64F, pixels; kind of AlignmentModel.
-    PlanarProblem(const Mat& reference, const Mat& image, int kind);
+    //! Points in pixels; kind of AlignmentModel.
+    PlanarProblem(const Points& reference, const Points& image, int kind);
 
     int size() const { return (int)image_.size(); }
     int sampleSize() const { return parameters() / 2; }

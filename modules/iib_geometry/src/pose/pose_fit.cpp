@@ -9,11 +9,10 @@ namespace {
 typedef std::vector<double> Errors;
 
 const int THRESHOLDS = 7;
-const double FIRST_THRESHOLD = 1.4;          // scales
-const double RANGE = 12;                     // ratio of the last threshold to the first
-const double FARTHEST_AGREEING = 12;         // scales: largest error of a match to sample from
-const double UNSURE = 4;                     // factor by which an estimated scale may be wrong
-const double FINELY = 1e-9, ROUGHLY = 1e-3;  // polish's `enough`
+const double FIRST_THRESHOLD = 1.4;   // scales
+const double RANGE = 12;              // ratio of the last threshold to the first
+const double FARTHEST_AGREEING = 12;  // scales: largest error of a match to sample from
+const double UNSURE = 4;              // factor by which an estimated scale may be wrong
 const int FEWEST = 100, FEW_TRIALS = 1000, MANY_TRIALS = 500, MOST_TRIALS = 12000;
 const int ROUNDS = 3;               // of sampling from the best pose's inliers, at most
 const double BETTER = .99;          // another round follows if the best sum falls below this share of it

@@ -58,7 +58,8 @@ Vec<double, 5> stepBetween(const RelativePose& pose, const RelativePose& other)
     return Vec<double, 5>(turn[0], turn[1], turn[2], along[0], along[1]);
 }
 
-// The inverse of exp(w) R, t + B a, with B the tangents: R' exp(-w) = exp(-R' w) R', -R' exp(-w) (t + B a) = -R't - R'(B a + t x w) + ...
+// A step turns R to exp(w) R and t to t + B a, with the tangents B. The inverse pose, R' and -R't, then has the rotation
+// R' exp(-w) = exp(-R'w) R', and to first order the translation -R't - R'(B a + t x w).
 Matx<double, 5, 5> stepOfInverse(const RelativePose& pose)
 {
     const Matx33d back = pose.R.t() * -1.;

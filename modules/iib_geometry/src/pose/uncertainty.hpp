@@ -20,18 +20,15 @@ const double SHARED = .2;            // of the variance of a match
 const double LEAST_NOISE = .02;      // pixels: least standard deviation of a match
 const double LARGEST_DEVIATION = 3;  // radians: standard deviation of an undetermined angle
 
-//! The index of each point's part of the image. Points are N x 2, CV_64F; the parts divide their span.
-inline std::vector<int> partsOf(const Mat& points)
+//! The index of each point's part of the image. The parts divide the points' span.
+inline std::vector<int> partsOf(const Points& points)
 {
     const Rect2d span = spanOf(points);
     const auto part = [](double place, int parts) { return (int)std::clamp(place * parts, 0., parts - 1.); };
-    std::vector<int> parts(points.rows);
-    for (int i = 0; i < points.rows; i++)
-    {
-        const double* p = points.ptr<double>(i);
-        parts[i] = part((p[0] - span.x) / span.width, PARTS_ACROSS) +
-                   part((p[1] - span.y) / span.height, PARTS_DOWN) * PARTS_ACROSS;
-    }
+    std::vector<int> parts;
+    for (const Point2d& p : points)
+        parts.push_back(part((p.x - span.x) / span.width, PARTS_ACROSS) +
+                        part((p.y - span.y) / span.height, PARTS_DOWN) * PARTS_ACROSS);
     return parts;
 }
 
@@ -85,7 +82,7 @@ Square<typename Problem::Step> covarianceOf(const Problem& problem, const Fit<Pr
     }
     const double count = (double)rows.size(), freedom = std::max(count - problem.parameters(), 1.);
     const double bend = std::max(slope / weights, leastBend), meanSlope = bend * weights / count;
-    // The ratio of F's to chi-squared's quantiles, so that 95 % intervals also hold for noise estimated from few matches.
+    // Noise estimated from few matches may be too small: F's quantiles over those of chi-squared.
     const double few = (std::max(freedom, 3.) + 2) / (std::max(freedom, 3.) - 2);
     const double noise2 = std::max(influence2 / freedom / square(meanSlope) * few, square(LEAST_NOISE));
 

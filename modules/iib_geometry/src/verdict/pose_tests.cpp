@@ -10,10 +10,7 @@ namespace {
 const int TRIALS = 300;
 const int SAMPLE = 2;  // lines that determine an epipole
 
-Vec3d homogeneous(const Mat& points, int i)
-{
-    return Vec3d(points.at<double>(i, 0), points.at<double>(i, 1), 1);
-}
+Vec3d homogeneous(const Point2d& point) { return Vec3d(point.x, point.y, 1); }
 
 //! The chance that the epipolar line of a wrong match passes it within the limit, in front of the camera or behind it.
 double chanceOf(double limit, double parallax)
@@ -104,7 +101,7 @@ Verdict::Marks withinByMoreThanChance(
     return marks;
 }
 
-Verdict::Marks movedByParallax(const Mat& reference, const Mat& image, const Matx33d& transform,
+Verdict::Marks movedByParallax(const Points& reference, const Points& image, const Matx33d& transform,
         const Verdict::Marks& explained, double limit, const Verdict& verdict)
 {
     std::vector<int> others;
@@ -115,9 +112,9 @@ Verdict::Marks movedByParallax(const Mat& reference, const Mat& image, const Mat
     {
         if (explained[i])
             continue;
-        Vec3d there = transform * homogeneous(image, (int)i);
+        Vec3d there = transform * homogeneous(image[i]);
         there *= 1 / there[2];
-        const Vec3d here = homogeneous(reference, (int)i);
+        const Vec3d here = homogeneous(reference[i]);
         // The chance that a wrong match, whose direction is random, comes as near to the line.
         chances += 2 / CV_PI * std::asin(std::min(1., limit / norm(here - there)));
         all[i] = true;
@@ -137,7 +134,7 @@ Verdict::Marks movedByParallax(const Mat& reference, const Mat& image, const Mat
         int count = 0;
         for (size_t k = 0; k < others.size(); k++)
         {
-            const Vec3d line = epipole.cross(planar[k]), here = homogeneous(reference, others[k]);
+            const Vec3d line = epipole.cross(planar[k]), here = homogeneous(reference[others[k]]);
             const bool near = std::abs(line.dot(here)) < limit * std::hypot(line[0], line[1]);
             agree[others[k]] = near;
             count += near;

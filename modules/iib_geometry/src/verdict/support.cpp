@@ -3,8 +3,6 @@
 
 #include <set>
 
-#include "../common/points.hpp"
-
 namespace cv::iib {
 namespace {
 
@@ -17,8 +15,6 @@ const size_t FEW_REGIONS = 6;
 const double ROUGH = .5;      // tolerance of matches far apart, between which depth and perspective change
 const double LEAST_FAR = .3;  // of pairs of matches far apart that agree
 const double EXACT = .25;     // tolerance around an estimated map
-
-typedef std::vector<Point2d> Points;
 
 //! An evenly spaced sample.
 Points someOf(const Points& points, size_t most)

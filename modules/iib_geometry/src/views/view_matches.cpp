@@ -20,9 +20,9 @@ const double CONFIDENCE = .9999;
 const int MOST_TRIALS = 10000;
 const int SMALL = 480, WORKING = 1024;  // pixels of the longest side of a view
 
-std::vector<Point2d> placesOf(const Mat& points, const std::vector<uchar>& marks)
+Points placesOf(const Mat& points, const std::vector<uchar>& marks)
 {
-    std::vector<Point2d> chosen;
+    Points chosen;
     for (int i = 0; i < points.rows; i++)
         if (marks.empty() || marks[i])
             chosen.push_back(points.at<Point2f>(i));
@@ -101,8 +101,7 @@ ViewMatches matchTwoViews(const DescribedView& first, const DescribedView& secon
     ViewMatches found = propagated(first, second, given);
     if (areImages)
     {
-        const std::vector<Point2d> places1 = placesOf(found.points1, {}),
-                                   places2 = placesOf(found.points2, {});
+        const Points places1 = placesOf(found.points1, {}), places2 = placesOf(found.points2, {});
         const Support support = Support::of(places1, places2);
         if (found.points1.rows >= LEAST_CLEAR && support.share() > SHARE_CLEAR &&
                 agreeFarApart(places1, places2, support.map))
@@ -135,8 +134,8 @@ ViewMatches matchTwoViews(const DescribedView& first, const DescribedView& secon
     convertToImages(first, second, found);
     if (isOneStructure || geometry.count() == 0)
         return found;
-    const std::vector<Point2d> places1 = placesOf(found.points1, geometry.inliers),
-                               places2 = placesOf(found.points2, geometry.inliers);
+    const Points places1 = placesOf(found.points1, geometry.inliers),
+                 places2 = placesOf(found.points2, geometry.inliers);
     const Matx33d map = Support::of(places1, places2).map;
     if (determinant(map) <= 0 || !agreeFarApart(places1, places2, map))
         return found;

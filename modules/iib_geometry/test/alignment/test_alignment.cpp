@@ -258,13 +258,13 @@ TEST(Alignment, deviation_predicts_the_errors_of_the_corners)
         const int trials = 100;
         for (int trial = 0; trial < trials; trial++)
         {
-            Mat image(120, 2, CV_64F), reference(120, 2, CV_64F);
-            for (int i = 0; i < image.rows; i++)
-                for (int c = 0; c < 2; c++)
+            Points image(120), reference(120);
+            for (int i = 0; i < 120; i++)
+                for (double Point2d::*axis : {&Point2d::x, &Point2d::y})
                 {
-                    image.at<double>(i, c) = random.uniform(0., 300.);
-                    reference.at<double>(i, c) =
-                            i < 20 ? random.uniform(0., 300.) : image.at<double>(i, c) + random.gaussian(.4);
+                    image[i].*axis = random.uniform(0., 300.);
+                    reference[i].*axis =
+                            i < 20 ? random.uniform(0., 300.) : image[i].*axis + random.gaussian(.4);
                 }
             const PlanarProblem problem(reference, image, kind);
             const Fit<PlanarProblem> fit = robustFit(problem);
@@ -284,10 +284,10 @@ TEST(Alignment, deviation_predicts_the_errors_of_the_corners)
 TEST(Alignment, derivatives_are_those_of_finite_differences)
 {
     RNG random(7);
-    Mat image(40, 2, CV_64F), reference(40, 2, CV_64F);
+    Points image(40), reference;
     random.fill(image, RNG::UNIFORM, 0, 300);
-    random.fill(reference, RNG::NORMAL, 0, 3);
-    reference += image;
+    for (const Point2d& point : image)
+        reference.push_back(point + Point2d(random.gaussian(3), random.gaussian(3)));
     const Matx33d model(1.01, .02, .01, -.01, .99, -.01, .01, .02, 1);
     for (int kind : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
         expectDerivatives(PlanarProblem(reference, image, kind), model, 5, 1e-3);

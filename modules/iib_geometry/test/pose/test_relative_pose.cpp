@@ -36,12 +36,8 @@ TEST(RelativePose, five_points_give_essential_matrices_and_the_true_one_among_th
         Point2d first[5], second[5];
         for (int i = 0; i < 5; i++)
         {
-            const Vec3d u = CAMERA.inv() *
-                            Vec3d(views.points1.at<double>(i, 0), views.points1.at<double>(i, 1), 1),
-                        v = CAMERA.inv() *
-                            Vec3d(views.points2.at<double>(i, 0), views.points2.at<double>(i, 1), 1);
-            first[i] = Point2d(u[0], u[1]);
-            second[i] = Point2d(v[0], v[1]);
+            first[i] = moved(CAMERA.inv(), views.points1[i]);
+            second[i] = moved(CAMERA.inv(), views.points2[i]);
         }
         std::vector<Matx33d> essentials;
         fivePointEssentials(first, second, essentials);
@@ -102,67 +98,13 @@ TEST(RelativePose, is_found_among_wrong_matches)
         }
 }
 
-TEST(RelativePose, is_the_same_again_in_both_depths_and_layouts)
-{
-    RNG random(6);
-    const Views views(random, randomPose(random, .2), 100, 30, .2);
-    Mat first, second, R[2], t[2];
-    views.points1.convertTo(first, CV_32F);
-    views.points2.convertTo(second, CV_32F);
-    std::vector<Point2d> pairs1, pairs2;
-    for (int i = 0; i < first.rows; i++)
-    {
-        pairs1.push_back(first.at<Point2f>(i));
-        pairs2.push_back(second.at<Point2f>(i));
-    }
-    ASSERT_TRUE(findRelativePose(first, second, Mat(CAMERA), Mat(CAMERA), R[0], t[0]));
-    ASSERT_TRUE(findRelativePose(pairs1, pairs2, CAMERA, Matx33f(CAMERA), R[1], t[1]));
-    EXPECT_EQ(0, cvtest::norm(R[0], R[1], NORM_INF));
-    EXPECT_EQ(0, cvtest::norm(t[0], t[1], NORM_INF));
-}
-
-//! Ten thousand matches; the same two agree with every proposed model.
-struct HopelessProblem
-{
-    typedef double Model;
-    typedef Vec<double, 1> Step;
-
-    mutable std::atomic<int> trials{0};
-
-    int size() const { return 10000; }
-    int sampleSize() const { return 5; }
-    int parameters() const { return 1; }
-    void propose(const std::vector<int>&, std::vector<double>& models) const
-    {
-        trials++;
-        models = {0};
-    }
-    double loss(double, const Loss&, double) const { return size() - 2; }
-    void squaredErrors(double, std::vector<double>& errors) const
-    {
-        errors.assign(size(), 1e6);
-        errors[0] = errors[1] = 0;
-    }
-    void linearize(double, double, std::vector<Row<Step>>& rows) const { rows.clear(); }
-    double moved(double model, const Step&) const { return model; }
-};
-
-// A sample without wrong matches cannot be expected: 1 - share^5 is 1 in double precision.
-TEST(RelativePose, hopeless_matches_get_the_most_samples)
-{
-    const HopelessProblem problem;
-    const Fit<HopelessProblem> fit = robustFit(problem);
-    EXPECT_EQ(10000, problem.trials);
-    EXPECT_EQ(10000, fit.samples);
-}
-
 //! A model is a random number seeded by its sample, so the result depends on every sample that was tried.
 struct SenselessProblem
 {
     typedef uint64 Model;
     typedef Vec<double, 1> Step;
 
-    uint64 seed;
+    uint64 seed = 0;
 
     int size() const { return 40; }
     int sampleSize() const { return 3; }
@@ -182,6 +124,34 @@ struct SenselessProblem
     void linearize(Model, double, std::vector<Row<Step>>& rows) const { rows.clear(); }
     Model moved(Model model, const Step&) const { return model; }
 };
+
+//! Ten thousand matches; the same two agree with every proposed model.
+struct HopelessProblem : SenselessProblem
+{
+    mutable std::atomic<int> trials{0};
+
+    int size() const { return 10000; }
+    int sampleSize() const { return 5; }
+    void propose(const std::vector<int>&, std::vector<Model>& models) const
+    {
+        trials++;
+        models = {0};
+    }
+    double loss(Model, const Loss&, double) const { return size() - 2; }
+    void squaredErrors(Model, std::vector<double>& errors) const
+    {
+        errors.assign(size(), 1e6);
+        errors[0] = errors[1] = 0;
+    }
+};
+
+// A sample without wrong matches cannot be expected: 1 - share^5 is 1 in double precision.
+TEST(RelativePose, hopeless_matches_get_the_most_samples)
+{
+    const HopelessProblem problem;
+    EXPECT_EQ(10000, robustFit(problem).samples);
+    EXPECT_EQ(10000, problem.trials);
+}
 
 TEST(RelativePose, does_not_depend_on_the_number_of_threads)
 {
@@ -207,7 +177,7 @@ TEST(RelativePose, one_match_far_away_changes_little)
     const RelativePose truth = randomPose(random, .1);
     Views views(random, truth, 300, 20, .2);
     const PoseResult before(views);
-    views.points1.at<Vec2d>(0) = views.points2.at<Vec2d>(0) = Vec2d(5e4, -2e4);
+    views.points1[0] = views.points2[0] = Point2d(5e4, -2e4);
     const PoseResult withFar(views);
     ASSERT_TRUE(before.found && withFar.found);
     EXPECT_LT(cv::norm(withFar.error(truth)), .03);
@@ -220,13 +190,16 @@ TEST(RelativePose, one_match_far_away_changes_little)
     }
 }
 
-TEST(RelativePose, takes_columns_of_a_matrix_and_gives_fixed_sizes)
+TEST(RelativePose, takes_both_depths_and_all_layouts_and_gives_fixed_sizes)
 {
     RNG random(10);
     const Views views(random, randomPose(random, .2), 100, 30, .2);
+    const std::vector<Point2f> first(views.points1.begin(), views.points1.end()),
+            second(views.points2.begin(), views.points2.end());
+    const Points one(first.begin(), first.end()), other(second.begin(), second.end());
     Mat both, R, t;
-    hconcat(views.points1, views.points2, both);
-    ASSERT_TRUE(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t));
+    hconcat(Mat(first).reshape(1), Mat(second).reshape(1), both);
+    ASSERT_TRUE(findRelativePose(first, second, Mat(CAMERA), Matx33f(CAMERA), R, t));
     EXPECT_EQ(CV_64F, R.type());
     EXPECT_EQ(Size(1, 3), t.size());
     Matx33d fixedR;
@@ -234,8 +207,12 @@ TEST(RelativePose, takes_columns_of_a_matrix_and_gives_fixed_sizes)
     Matx<double, 5, 5> covariance;
     ASSERT_TRUE(findRelativePose(both.colRange(0, 2), both.colRange(2, 4), CAMERA, CAMERA, fixedR, fixedT,
             noArray(), 0, covariance));
-    EXPECT_EQ(0, cvtest::norm(R, Mat(fixedR), NORM_INF));
-    EXPECT_EQ(0, cvtest::norm(t, Mat(fixedT), NORM_INF));
+    const PoseResult again(one, other);
+    for (const RelativePose& same : {again.pose, RelativePose{fixedR, fixedT}})
+    {
+        EXPECT_EQ(Matx33d(R), same.R);
+        EXPECT_EQ(Vec3d(t), same.t);
+    }
     ASSERT_FALSE(findRelativePose(both(Rect(0, 0, 2, 4)), both(Rect(2, 0, 2, 4)), CAMERA, CAMERA, fixedR,
             fixedT, noArray(), 0, covariance));
     EXPECT_TRUE(std::isnan(fixedR(0, 0)) && std::isnan(fixedT[2]) && std::isnan(covariance(4, 4)));
@@ -287,12 +264,12 @@ TEST(RelativePose, steps_lead_to_other_poses)
 TEST(RelativePose, poses_of_a_plane_have_rotations_for_any_camera)
 {
     const Matx33d camera(.001, 0, 320, 0, 500, 240, 0, 0, 1);
-    Mat first(12, 2, CV_64F), second(12, 2, CV_64F);
+    Points first, second;
     RNG random(3);
     for (int i = 0; i < 12; i++)  // on a line
     {
-        first.at<Point2d>(i) = Point2d(100 + 35 * i, 277 + 6 * i);
-        second.at<Point2d>(i) = first.at<Point2d>(i) + Point2d(random.gaussian(.3), random.gaussian(.3));
+        first.emplace_back(100 + 35 * i, 277 + 6 * i);
+        second.push_back(first.back() + Point2d(random.gaussian(.3), random.gaussian(.3)));
     }
     const EpipolarProblem problem(first, second, camera, camera);
     int count = 0;
@@ -318,18 +295,17 @@ TEST(RelativePose, invalid_arguments_are_refused)
     broken.at<float>(3, 1) = std::numeric_limits<float>::quiet_NaN();
     skewed.at<double>(0, 1) = 1;
     flat.at<double>(1, 1) = 0;
-    EXPECT_THROW(findRelativePose(points, points.rowRange(1, 10), camera, camera, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(Mat(10, 3, CV_32F), points, camera, camera, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(Mat(10, 2, CV_32S), points, camera, camera, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(points, broken, camera, camera, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(points, Mat(10, 2, CV_64F, Scalar(DBL_MAX)), camera, camera, R, t),
-            cv::Exception);
-    EXPECT_THROW(
-            findRelativePose(points, Mat(10, 2, CV_64F, Scalar(1e10)), camera, camera, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(points, points, skewed, camera, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(points, points, camera, flat, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(points, points, camera, Mat(), R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(points, points, Mat(3, 3, CV_32S), camera, R, t), cv::Exception);
+    for (const Mat& wrong : {Mat(points.rowRange(1, 10)), Mat(10, 3, CV_32F), Mat(10, 2, CV_32S), broken,
+                 Mat(10, 2, CV_64F, Scalar(DBL_MAX)), Mat(10, 2, CV_64F, Scalar(1e10))})
+    {
+        EXPECT_THROW(findRelativePose(points, wrong, camera, camera, R, t), cv::Exception) << wrong;
+        EXPECT_THROW(findRelativePose(wrong, points, camera, camera, R, t), cv::Exception) << wrong;
+    }
+    for (const Mat& wrong : {skewed, flat, Mat(), Mat(3, 3, CV_32S)})
+    {
+        EXPECT_THROW(findRelativePose(points, points, wrong, camera, R, t), cv::Exception) << wrong;
+        EXPECT_THROW(findRelativePose(points, points, camera, wrong, R, t), cv::Exception) << wrong;
+    }
     for (double scale :
             {-1., std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
         EXPECT_THROW(findRelativePose(points, points, camera, camera, R, t, noArray(), scale), cv::Exception);

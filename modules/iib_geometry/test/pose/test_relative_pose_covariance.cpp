@@ -75,11 +75,11 @@ TEST(RelativePose, covariance_predicts_errors_that_neighbours_share)
         Vec2d shifts[12];
         for (Vec2d& shift : shifts)
             random.fill(shift, RNG::NORMAL, 0, .2);
-        for (int i = 0; i < views.points1.rows; i++)
+        for (size_t i = 0; i < views.points1.size(); i++)
         {
-            const Vec2d at = views.points1.at<Vec2d>(i);
-            const int part = std::clamp(int(at[0] / 160), 0, 3) + 4 * std::clamp(int(at[1] / 160), 0, 2);
-            views.points2.at<Vec2d>(i) += shifts[part];
+            const Point2d at = views.points1[i];
+            const int part = std::clamp(int(at.x / 160), 0, 3) + 4 * std::clamp(int(at.y / 160), 0, 2);
+            views.points2[i] += Point2d(shifts[part]);
         }
         return views;
     });

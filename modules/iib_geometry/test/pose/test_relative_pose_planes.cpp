@@ -63,15 +63,14 @@ TEST(RelativePose, undetermined_parameters_have_a_large_deviation)
         {
             const RelativePose truth =
                     kind == 3 ? RelativePose{Matx33d::eye(), Vec3d(1, 0, 0)} : randomPose(random, .1);
-            Mat first(200, 2, CV_64F), second(200, 2, CV_64F);
+            Points first(200), second(200);
             for (int i = 0; i < 200; i++)
             {
                 const double baselines[] = {1e-6, 1e-3, 1, 0};
-                double *const seen = first.ptr<double>(i), *const seenAgain = second.ptr<double>(i);
-                see(random, truth, kind == 2 ? onLine(random) : anyPoint(random), kind == 3 ? 0 : .2, seen,
-                        seenAgain, baselines[kind]);
+                see(random, truth, kind == 2 ? onLine(random) : anyPoint(random), kind == 3 ? 0 : .2,
+                        first[i], second[i], baselines[kind]);
                 if (kind == 3 && i < 60)
-                    std::copy_n(anyPixel(random).val, 2, seenAgain);
+                    second[i] = anywhere(random, 1, 640, 480)[0];
             }
             const PoseResult result(first, second);
             if (!result.found)
@@ -107,17 +106,19 @@ struct OfPlane
         {
             RNG random(100 + trial);
             const RelativePose truth = randomPose(random, .1);
-            Mat first(count, 2, CV_64F), second(count, 2, CV_64F);
+            Points first(count), second(count);
             for (int i = 0; i < count; i++)
             {
                 const Vec3d ray = CAMERA.inv() * anyPixel(random);
                 const double aside = relief > 0 ? random.uniform(-relief, relief) : 0;
                 const Vec3d X = ray * (8 * (1 + aside) / (1 + .2 * ray[0] + .1 * ray[1]));
-                see(random, truth, X, noise, first.ptr<double>(i), second.ptr<double>(i));
+                see(random, truth, X, noise, first[i], second[i]);
             }
-            for (Mat* points : {&first, &second})
-                if (wrongMatches > 0)
-                    anywhere(random, wrongMatches, 640, 480).copyTo(points->rowRange(0, wrongMatches));
+            for (Points* points : {&first, &second})
+            {
+                const Points wrong = anywhere(random, wrongMatches, 640, 480);
+                std::copy(wrong.begin(), wrong.end(), points->begin());
+            }
             const PoseResult result(first, second);
             (!result.found ? refused : cv::norm(result.error(truth)) < .1 ? right : wrong)++;
             beyond += result.found && result.squared(truth) > 25;

@@ -12,8 +12,8 @@ RelativePose along(RNG& random, const Vec3d& t) { return {randomPose(random, .1)
 
 void append(Views& views, const Point2d& first, const Point2d& second)
 {
-    views.points1.push_back(Mat(Matx12d(first.x, first.y)));
-    views.points2.push_back(Mat(Matx12d(second.x, second.y)));
+    views.points1.push_back(first);
+    views.points2.push_back(second);
 }
 
 //! The camera moves forward by .1, points are 4 to 12 away. Noise near the epipole must not hide the direction of t.
@@ -81,7 +81,7 @@ TEST(RelativePose, more_right_matches_never_lose_the_pose)
                 const Vec3d pixel =
                         centre + scene.beside * Vec3d(random.uniform(-1., 1.), random.uniform(-1., 1.), 0);
                 Point2d first, second;
-                see(random, truth, depth * (CAMERA.inv() * pixel), 0, &first.x, &second.x);
+                see(random, truth, depth * (CAMERA.inv() * pixel), 0, first, second);
                 append(views, first, second);
             }
             const PoseResult result(views);
