@@ -4,7 +4,6 @@
 #include "../common/points.hpp"
 #include "../verdict/support.hpp"
 #include "../views/view_search.hpp"
-#include "corner_errors.hpp"
 #include "judgement.hpp"
 
 namespace cv::iib {
@@ -64,7 +63,7 @@ struct Alignment
         if (coarse && judgement.against.empty() && !coarse->judgement.note.empty())
             judgement.note = coarse->judgement.note;  // only the matches of the transform were refined
         if (judgement.against.empty() && tried > 1 &&
-                areOneStructure(marked(points, fitted().agree).reference.reshape(2)))
+                areOneStructure(marked(points, fitted().agree).reference))
             judgement = {
                     "the images share one structure that looks the same in some view, such as a round spot",
                     false, ""};

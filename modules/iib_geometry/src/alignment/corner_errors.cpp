@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "corner_errors.hpp"
-
 #include "../pose/uncertainty.hpp"
+#include "judgement.hpp"
 
 namespace cv::iib {
 namespace {
@@ -56,15 +55,15 @@ Correlation correlationOf(const FittedTransform& fitted, const std::vector<int>&
 //! 0 if all matches are moved by whole pixels, up to 1 if by half pixels.
 double resampledShare(const FittedTransform& fitted, const AlignedPoints& points, double pixel)
 {
-    const Mat images = marked(points, fitted.agree).image;
+    const Points images = marked(points, fitted.agree).image;
     const Matx33d transform = fitted.transform();
     double sum = 0;
-    for (int i = 0; i < images.rows; i++)
+    for (const Point2d& from : images)
     {
-        const Point2d from = images.at<Point2d>(i), by = (moved(transform, from) - from) / pixel;
+        const Point2d by = (moved(transform, from) - from) / pixel;
         sum += square(std::sin(CV_PI * by.x)) + square(std::sin(CV_PI * by.y));
     }
-    return sum / std::max(2. * images.rows, 1.);
+    return sum / std::max(2. * (double)images.size(), 1.);
 }
 
 }  // namespace

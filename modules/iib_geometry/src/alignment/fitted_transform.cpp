@@ -21,16 +21,10 @@ Matx33d simplified(const Matx33d& model, int kind)
 {
     if (kind == ALIGN_HOMOGRAPHY)
         return model;
-    Matx33d affine = affineAt(model, Point2d());
+    const Matx33d affine = affineAt(model, Point2d());
     if (kind == ALIGN_TRANSLATION)
-        affine(0, 0) = affine(1, 1) = 1, affine(0, 1) = affine(1, 0) = 0;
-    else if (kind == ALIGN_SIMILARITY)
-    {
-        affine(0, 0) = affine(1, 1) = (affine(0, 0) + affine(1, 1)) / 2;
-        affine(1, 0) = (affine(1, 0) - affine(0, 1)) / 2;
-        affine(0, 1) = -affine(1, 0);
-    }
-    return affine;
+        return {1, 0, affine(0, 2), 0, 1, affine(1, 2), 0, 0, 1};
+    return kind == ALIGN_SIMILARITY ? similarityOf(affine) : affine;
 }
 
 //! Log likelihood that the richer transform gains on each match.
@@ -47,7 +41,7 @@ std::vector<double> gains(const FittedTransform& richer, const FittedTransform& 
 //! ENOUGH of the matches or more.
 AlignedPoints thinned(const AlignedPoints& points)
 {
-    Verdict::Marks some(points.image.rows);
+    Verdict::Marks some(points.image.size());
     for (size_t i = 0; i < some.size(); i += std::max<size_t>(some.size() / ENOUGH, 1))
         some[i] = true;
     return marked(points, some);
@@ -76,7 +70,6 @@ FittedTransform::FittedTransform(const AlignedPoints& points, int kind)
 FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const Matx33d& from, double scale)
     : model(kind), problem(points.reference, points.image, kind), limit(3 * REFINED), agree(problem.size())
 {
-    const double roughly = 1e-3, finely = 1e-9;
     if (problem.size() < problem.sampleSize())
         return;
     fit.model = simplified(problem.fromPixels(from), kind);
@@ -86,18 +79,18 @@ FittedTransform::FittedTransform(const AlignedPoints& points, int kind, const Ma
         scale = REFINED;
     }
     for (; scale > REFINED; scale /= 2)
-        polish(problem, Loss{scale}, roughly, fit.model);
+        polish(problem, Loss{scale}, ROUGHLY, fit.model);
     bool found = false;
     for (scale = REFINED; !found && scale <= 2 * REFINED; scale *= 2)
     {
-        polish(problem, Loss{scale}, roughly, fit.model);
+        polish(problem, Loss{scale}, ROUGHLY, fit.model);
         problem.squaredErrors(fit.model, fit.squared);
         found = findScale(fit.squared, FARTHEST_OF_CHOICE * scale, problem.parameters(), fit.scale);
         if (!found)
             fit.scale = scale;
     }
-    polish(problem, Loss{fit.scale}, finely, fit.model);
-    finish(problem, fit);
+    polish(problem, Loss{fit.scale}, FINELY, fit.model);
+    problem.squaredErrors(fit.model, fit.squared);
     limit = 3 * std::max(fit.scale, REFINED);
     agree = within(limit, fit.squared);
 }
@@ -121,18 +114,6 @@ bool FittedTransform::isSignificant(const Evidence& evidence) const
                    problem.sampleSize(), {.5 * limit, limit, 2 * limit, 4 * limit}) +
                    std::log10((double)evidence.tried) <
            Verdict::CERTAIN;
-}
-
-AlignedPoints marked(const AlignedPoints& points, const Verdict::Marks& marks)
-{
-    AlignedPoints some;
-    for (size_t i = 0; i < marks.size(); i++)
-        if (marks[i])
-        {
-            some.reference.push_back(points.reference.row((int)i));
-            some.image.push_back(points.image.row((int)i));
-        }
-    return some;
 }
 
 std::vector<FittedTransform> fittedTransforms(const Evidence& evidence, int model)

@@ -44,13 +44,11 @@ struct FittedTransform
     FittedTransform(const AlignedPoints& points, int model, const FittedTransform& richer);
 
     bool exists() const { return !fit.squared.empty(); }
-    int count() const { return (int)std::count(agree.begin(), agree.end(), true); }
+    int count() const { return countOf(agree); }
     Matx33d transform() const { return problem.inPixels(fit.model); }
 
     bool isSignificant(const Evidence& evidence) const;
 };
-
-AlignedPoints marked(const AlignedPoints& points, const Verdict::Marks& marks);
 
 /** The model and all richer ones; the homography is last.
 @param model AlignmentModel; ALIGN_AUTO: all. */

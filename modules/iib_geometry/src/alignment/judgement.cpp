@@ -2,8 +2,7 @@
 #include "judgement.hpp"
 
 #include "opencv2/iib/alignment.hpp"
-#include "../verdict/parallax.hpp"
-#include "sensor_marks.hpp"
+#include "../verdict/pose_tests.hpp"
 
 namespace cv::iib {
 namespace {
@@ -17,8 +16,6 @@ const double LEAST_OVERLAP = .3;   // of an image's area
 const double MOST_CLIPPED = .5;    // of an image's pixels are black or white
 
 const char* const NAMES[] = {"a translation", "a similarity", "an affine transform", "a homography"};
-
-int countOf(const Verdict::Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); }
 
 struct Parts
 {
@@ -189,6 +186,9 @@ double deviationBeside(const FittedTransform& fitted, const Evidence& evidence)
 {
     const Verdict& verdict = evidence.verdict;
     Verdict::Marks moved = partsBeside(fitted, evidence, 0), far = moved;
+    const auto isFew = [&] { return verdict.places(moved) <= LEAST_BESIDE * verdict.places(fitted.agree); };
+    if (isFew())
+        return 0;
     for (size_t i = 0; i < moved.size(); i++)
         far[i] = moved[i] && fitted.fit.squared[i] >= square(LEAST_PARALLAX);
     const bool isMotion = isOneMotion(far, evidence);  // the note of judgeMotion speaks of it
@@ -199,7 +199,7 @@ double deviationBeside(const FittedTransform& fitted, const Evidence& evidence)
         if (moved[i])
             squares.push_back(fitted.fit.squared[i]);
     }
-    if (verdict.places(moved) <= LEAST_BESIDE * verdict.places(fitted.agree))
+    if (isFew())
         return 0;
     const auto most = squares.begin() + squares.size() * 2 / 3;  // wrong matches are farther
     std::nth_element(squares.begin(), most, squares.end());

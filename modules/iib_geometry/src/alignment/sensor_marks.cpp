@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sensor_marks.hpp"
-
-#include "../precomp.hpp"
 #include "opencv2/imgproc.hpp"
+#include "judgement.hpp"
 
 namespace cv::iib {
 namespace {
@@ -23,8 +21,7 @@ bool isMark(const Mat& image, const Point2d& point)
     for (int k = -ring; k <= ring; k++)
         for (const Point& p : {Point(k, -ring), Point(k, ring), Point(-ring, k), Point(ring, k)})
             around.push_back(image.at<float>(at + p));
-    std::nth_element(around.begin(), around.begin() + around.size() / 2, around.end());
-    const Mat heights = abs(image(Rect(at.x - 3, at.y - 3, 7, 7)) - around[around.size() / 2]);
+    const Mat heights = abs(image(Rect(at.x - 3, at.y - 3, 7, 7)) - median(around));
     double height;
     minMaxLoc(heights(Rect(2, 2, 3, 3)), nullptr, &height);
     return countNonZero(heights > height / 4) <= MOST_PIXELS;
@@ -36,7 +33,7 @@ bool areOfTheSensor(const FittedTransform& fitted, const Evidence& evidence)
 {
     const AlignedPoints agreeing = marked(evidence.points, fitted.agree);
     if (agreeing.reference.empty() ||
-            !(norm(mean(Mat(agreeing.reference - agreeing.image).reshape(2))) < STILL))
+            !(norm(mean(Mat(Mat(agreeing.reference) - Mat(agreeing.image)))) < STILL))
         return false;
     Mat image = evidence.pair.sameView();
     if (image.empty())
@@ -45,8 +42,8 @@ bool areOfTheSensor(const FittedTransform& fitted, const Evidence& evidence)
         cvtColor(image, image, image.channels() == 4 ? COLOR_BGRA2GRAY : COLOR_BGR2GRAY);
     image.convertTo(image, CV_32F);
     double marks = 0, larger = 0, allMarks = 1, allLarger = 1;
-    for (int i = 0; i < agreeing.reference.rows; i++)
-        (isMark(image, agreeing.reference.at<Point2d>(i)) ? marks : larger)++;
+    for (const Point2d& point : agreeing.reference)
+        (isMark(image, point) ? marks : larger)++;
     if (marks < LEAST_MARKS * (marks + larger))
         return false;
     for (const KeyPoint& keypoint : evidence.points.keypoints[0])

@@ -17,9 +17,19 @@ int factorFor(const Size& size, int workingSize)
 
 const int SAMPLES_ACROSS = 32;  // of the grid that measures the area that both images show
 
-Point2d rowOf(const Mat& points, int i) { return points.at<Vec2d>(i); }
-
 }  // namespace
+
+AlignedPoints marked(const AlignedPoints& points, const std::vector<bool>& marks)
+{
+    AlignedPoints some;
+    for (size_t i = 0; i < marks.size(); i++)
+        if (marks[i])
+        {
+            some.reference.push_back(points.reference[i]);
+            some.image.push_back(points.image[i]);
+        }
+    return some;
+}
 
 WorkingPair::WorkingPair(
         const ImageViews& reference, const ImageViews& image, int workingSize, bool sameScale)
@@ -52,16 +62,15 @@ WorkingPair::WorkingPair(
 
 AlignedPoints WorkingPair::match() const
 {
-    AlignedPoints result = {
-            Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {described_[0]->keypoints, described_[1]->keypoints}};
+    AlignedPoints result = {{}, {}, {described_[0]->keypoints, described_[1]->keypoints}};
     const std::vector<DMatch> matches = matchesOf(*described_[0], *described_[1]);
     if (matches.empty())
         return result;
     Mat points1, points2;
     refineMatches(described_[0]->prepared, result.keypoints[0], described_[1]->prepared, result.keypoints[1],
             matches, points1, points2);
-    points1.convertTo(result.reference, CV_64F);
-    points2.convertTo(result.image, CV_64F);
+    points1.reshape(2).convertTo(result.reference, CV_64F);
+    points2.reshape(2).convertTo(result.image, CV_64F);
     return result;
 }
 
@@ -93,8 +102,8 @@ AlignedPoints WorkingPair::refined(
     {
         if (!agree[i])
             continue;
-        const Point2d from = moved(toWorking[0].inv(), rowOf(points.reference, (int)i)),
-                      to = moved(between, from), beside = moved(between, from + Point2d(1, 0)) - to;
+        const Point2d from = moved(toWorking[0].inv(), points.reference[i]), to = moved(between, from),
+                      beside = moved(between, from + Point2d(1, 0)) - to;
         const double angle = fastAtan2((float)beside.y, (float)beside.x);
         first.emplace_back(Point2f(from), (float)size, 0.f);
         second.emplace_back(Point2f(to), (float)(size * norm(beside)), (float)angle);
@@ -103,13 +112,12 @@ AlignedPoints WorkingPair::refined(
     Mat points1, points2, similarities;
     refineMatches(
             *prepared[0], first, *prepared[1], second, matches, points1, points2, noArray(), similarities);
-    AlignedPoints result = {Mat(0, 2, CV_64F), Mat(0, 2, CV_64F), {points.keypoints[0], points.keypoints[1]}};
+    AlignedPoints result = {{}, {}, {points.keypoints[0], points.keypoints[1]}};
     for (size_t i = 0; i < matches.size(); i++)
         if (similarities.at<float>((int)i) >= 0)
         {
-            const Point2d from = points1.at<Point2f>((int)i), to = points2.at<Point2f>((int)i);
-            result.reference.push_back(Mat(Vec2d(moved(toWorking[0], from))).t());
-            result.image.push_back(Mat(Vec2d(moved(toWorking[1], to))).t());
+            result.reference.push_back(moved(toWorking[0], points1.at<Point2f>((int)i)));
+            result.image.push_back(moved(toWorking[1], points2.at<Point2f>((int)i)));
         }
     return result;
 }
@@ -141,11 +149,11 @@ SharedPart WorkingPair::sharedPart(int which, const AlignedPoints& points, const
         if (both(point))
             part.points.push_back(point);
     }
-    const Mat& places = which ? points.image : points.reference;
+    const Points& places = which ? points.image : points.reference;
     for (size_t i = 0; i < agree.size(); i++)
         if (agree[i])
         {
-            const Point2d point = moved(toImage, rowOf(places, (int)i));
+            const Point2d point = moved(toImage, places[i]);
             part.agreeing.push_back(point);
             const Point pixel(std::clamp(cvRound(point.x), 0, size.width - 1),
                     std::clamp(cvRound(point.y), 0, size.height - 1));
@@ -156,12 +164,7 @@ SharedPart WorkingPair::sharedPart(int which, const AlignedPoints& points, const
 
 std::vector<Point2d> WorkingPair::imageCorners() const
 {
-    const Size size = images_[1]->size();
-    const double right = size.width - 1, bottom = size.height - 1;
-    std::vector<Point2d> corners;
-    for (const Point2d& corner : {Point2d(), Point2d(right, 0), Point2d(right, bottom), Point2d(0, bottom)})
-        corners.push_back(moved(described_[1]->fromImage, corner));
-    return corners;
+    return cornersAround(images_[1]->size(), described_[1]->fromImage, 0);
 }
 
 Mat WorkingPair::sameView() const
@@ -184,17 +187,15 @@ double WorkingPair::inPixels(double distance) const
 
 Mat WorkingPair::inPixels(const AlignedPoints& points, const std::vector<bool>& agree) const
 {
-    Mat both[2], all, result(0, 4, CV_32F);
-    if (points.reference.empty())
-        return result;
-    perspectiveTransform(points.reference.reshape(2), both[0], described_[0]->fromImage.inv());
-    perspectiveTransform(points.image.reshape(2), both[1], described_[1]->fromImage.inv());
-    hconcat(both[0].reshape(1), both[1].reshape(1), all);
-    all.convertTo(all, CV_32F);
-    for (int i = 0; i < all.rows; i++)
-        if (agree[i])
-            result.push_back(all.row(i));
-    return result;
+    const AlignedPoints some = marked(points, agree);
+    const Matx33d back1 = described_[0]->fromImage.inv(), back2 = described_[1]->fromImage.inv();
+    Mat all(0, 4, CV_32F);
+    for (size_t i = 0; i < some.image.size(); i++)
+    {
+        const Point2d one = moved(back1, some.reference[i]), other = moved(back2, some.image[i]);
+        all.push_back(Mat(Matx14f((float)one.x, (float)one.y, (float)other.x, (float)other.y)));
+    }
+    return all;
 }
 
 }  // namespace cv::iib

@@ -7,12 +7,15 @@
 
 namespace cv::iib {
 
-//! Refined matches of two images, N x 2 each, CV_64F, in working pixels.
+//! Refined matches of two images, in working pixels.
 struct AlignedPoints
 {
-    Mat reference, image;
+    Points reference, image;
     std::vector<KeyPoint> keypoints[2];  //!< all keypoints of both images
 };
+
+//! The marked matches, without keypoints.
+AlignedPoints marked(const AlignedPoints& points, const std::vector<bool>& marks);
 
 /** Two images, the views in which they are matched, and the refinement of their matches at full size. Working pixels are pixels of the
 views. */

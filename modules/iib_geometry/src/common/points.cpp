@@ -5,12 +5,12 @@
 
 namespace cv::iib {
 
-Mat pointsOf(InputArray given, const char* function, const char* argument)
+Points pointsOf(InputArray given, const char* function, const char* argument)
 {
     const double farthest = 1e9;
     Mat points = given.getMat();
     if (points.empty())
-        return Mat(0, 2, CV_64F);
+        return {};
     if (!points.isContinuous())
         points = points.clone();
     const int count = points.checkVector(2);
@@ -18,19 +18,19 @@ Mat pointsOf(InputArray given, const char* function, const char* argument)
         CV_Error(Error::StsBadArg,
                 format("%s: %s must be N x 2 numbers, CV_32F or CV_64F", function, argument));
     Mat rows;
-    points.reshape(1, count).convertTo(rows, CV_64F);
+    points.reshape(2, count).convertTo(rows, CV_64F);
     if (!checkRange(rows, true, nullptr, -farthest, farthest))
         CV_Error(Error::StsBadArg, format("%s: %s has numbers that are no pixels: not finite, or beyond %g",
                                            function, argument, farthest));
     return rows;
 }
 
-void checkMatched(const Mat& points1, const Mat& points2, const char* function)
+void checkMatched(const Points& points1, const Points& points2, const char* function)
 {
-    if (points1.rows != points2.rows)
+    if (points1.size() != points2.size())
         CV_Error(Error::StsUnmatchedSizes,
                 format("%s: points1 has %d points, points2 %d; they must be matches, one for one", function,
-                        points1.rows, points2.rows));
+                        (int)points1.size(), (int)points2.size()));
 }
 
 Point2d moved(const Matx33d& by, const Point2d& point)
@@ -39,20 +39,20 @@ Point2d moved(const Matx33d& by, const Point2d& point)
     return {q[0] / q[2], q[1] / q[2]};
 }
 
-Rect2d spanOf(const Mat& points)
+Rect2d spanOf(Points points)
 {
     if (points.empty())
         return Rect2d(0, 0, 1, 1);
-    const int count = points.rows, outermost = count < 20 ? 0 : std::max(count / 50, 1);
-    double least[2], most[2];
-    for (int c = 0; c < 2; c++)
+    const size_t count = points.size(), outermost = count < 20 ? 0 : std::max<size_t>(count / 50, 1);
+    Point2d least, most;
+    for (double Point2d::*axis : {&Point2d::x, &Point2d::y})
     {
-        Mat sorted;
-        cv::sort(points.col(c), sorted, SORT_EVERY_COLUMN);
-        least[c] = sorted.at<double>(outermost);
-        most[c] = std::max(sorted.at<double>(count - 1 - outermost), least[c] + 1);
+        std::sort(points.begin(), points.end(),
+                [&](const Point2d& a, const Point2d& b) { return a.*axis < b.*axis; });
+        least.*axis = points[outermost].*axis;
+        most.*axis = std::max(points[count - 1 - outermost].*axis, least.*axis + 1);
     }
-    return Rect2d(least[0], least[1], most[0] - least[0], most[1] - least[1]);
+    return Rect2d(least, most);
 }
 
 void writeRows(const Mat& rows, OutputArray output)

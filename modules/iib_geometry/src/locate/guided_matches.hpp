@@ -3,6 +3,7 @@
 
 #include "../map/map.hpp"
 #include "../pose/camera_pose.hpp"
+#include "../views/image_views.hpp"
 
 namespace cv::iib {
 
@@ -23,6 +24,12 @@ std::vector<bool> refineAgainstViews(std::vector<Match>& matches, const Views& v
 @param compared images of the map whose points are used. @param frame of the pose. */
 std::vector<Match> guidedMatches(const Views& views, const std::vector<size_t>& compared, const Lens& lens,
         const Frame& frame, const Affine3d& pose);
+
+/** Matches an image with one of a map's images in views of both, and transfers the keypoints of the map's image like
+their nearest match. Finds points at another zoom, rotation or tilt.
+@param view number of the map's image, which must have a picture.
+@return matches; `keypoint` is the number of the nearest match, `bits` the distance from it in pixels. */
+std::vector<Match> matchesInViews(const Map& map, size_t view, const ImageViews& image);
 
 //! Sets the deviation of refined matches to that of their reprojection errors.
 void learnDeviation(std::vector<Match>& matches, const Lens& lens, const Affine3d& pose);

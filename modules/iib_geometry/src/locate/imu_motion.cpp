@@ -17,13 +17,6 @@ constexpr int64 MAX_GAP = 100000000;                   // nanoseconds between re
 
 Matx33d turnBy(const Vec3d& vector) { return Affine3d(vector).rotation(); }
 
-void setBlock(ImuState::Matrix& matrix, int row, int column, const Matx33d& block)
-{
-    for (int y = 0; y < 3; y++)
-        for (int x = 0; x < 3; x++)
-            matrix(row + y, column + x) = block(y, x);
-}
-
 Vec3d part(const ImuState::Errors& error, int begin) { return Vec3d(error.val + begin); }
 
 }  // namespace
@@ -105,11 +98,8 @@ bool integrate(const std::vector<ImuReading>& readings, int64 from, int64 to, Im
 
 Matx66d covarianceAt(const Matx66d& covariance, const Vec3d& offset)
 {
-    const Matx33d lever = -crossProduct(offset);
     Matx66d change = Matx66d::eye();
-    for (int y = 0; y < 3; y++)
-        for (int x = 0; x < 3; x++)
-            change(y, 3 + x) = lever(y, x);
+    setBlock(change, 0, 3, -crossProduct(offset));
     return change * covariance * change.t();
 }
 

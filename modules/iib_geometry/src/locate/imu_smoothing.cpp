@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "../pose/camera_pose.hpp"
-#include "../pose/two_views.hpp"
 #include "imu_motion.hpp"
 
 namespace cv::iib {
@@ -119,14 +119,8 @@ bool findStart(const std::vector<int64>& times, const std::vector<Affine3d>& pos
 //! The result of filtering from one frame with a pose onwards.
 struct Run
 {
-    enum Verdict
-    {
-        NO_READINGS,  //!< between the first frames
-        SHORT,        //!< too few poses to initialize the filter
-        CONTRADICTS,
-        AGREES
-    } verdict = NO_READINGS;
-    std::vector<Step> steps;  //!< of frames in order, if the run agrees
+    std::vector<Step> steps;  //!< of frames in order; empty if the run does not agree with the readings
+    bool isShort = false;     //!< too few poses to initialize the filter
     bool ended = false;       //!< by images that the readings contradict
 };
 
@@ -145,11 +139,8 @@ Run filtered(const std::vector<ImuFrame>& frames, const std::vector<ImuReading>&
     step.state.rotation = seen[0].rotation();
     step.state.position = seen[0].translation();
     Run run;
-    if (seen.size() < LEAST_FRAMES)
-        run.verdict = Run::SHORT;
-    else if (findStart(times, seen, readings, step.state))
-        run.verdict = Run::AGREES;
-    if (run.verdict != Run::AGREES)
+    run.isShort = seen.size() < LEAST_FRAMES;
+    if (run.isShort || !findStart(times, seen, readings, step.state))
         return run;
     const double ofParts[] = {1, 1, 1, .02, .2, .2};
     for (int i = 0; i < ImuState::SIZE; i++)
@@ -184,10 +175,7 @@ Run filtered(const std::vector<ImuFrame>& frames, const std::vector<ImuReading>&
     }
     run.ended = excess > EXCESS_AT_END * double(std::min(images, FEW));
     if (run.ended)
-    {
-        run.steps.resize(agreedSteps);
-        run.verdict = agreed > MANY ? Run::AGREES : Run::CONTRADICTS;
-    }
+        run.steps.resize(agreed > MANY ? agreedSteps : 0);
     return run;
 }
 
@@ -204,12 +192,6 @@ void smooth(std::vector<Step>& steps)
         step.state = plus(step.state, gain * minus(next.state, next.expected));
         step.covariance += gain * (next.covariance - next.expectedCovariance) * gain.t();
     }
-}
-
-//! The rotation from one pose to another as a vector about the world's axes.
-Vec3d turnFrom(const Affine3d& from, const Affine3d& to)
-{
-    return Affine3d(to.rotation() * from.rotation().t(), Vec3d()).rvec();
 }
 
 /** Limits covariances to the scatter of poses (third differences of four in a row, motion included): images with too
@@ -233,7 +215,7 @@ void limitToScatter(std::vector<ImuFrame>& frames)
                 if (b != a)
                     weight *= 1e9 / double(four[a]->nanoseconds - four[b]->nanoseconds);
             off[0] += weight * (four[a]->pose->translation() - four[0]->pose->translation());
-            off[1] += weight * turnFrom(*four[0]->pose, *four[a]->pose);
+            off[1] += weight * Affine3d(four[a]->pose->rotation() * four[0]->pose->rotation().t()).rvec();
             variance += weight * weight * four[a]->covariance;
         }
         for (int k = 0; k < 2; k++)
@@ -287,9 +269,7 @@ void checkTimes(const std::vector<int64>& times, const char* what)
                             what, int(i), std::to_string(times[i]).c_str()));
 }
 
-}  // namespace
-
-std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& images,
+void checkArguments(const std::vector<int64>& times, const std::vector<Location>& images,
         const std::vector<ImuReading>& readings, const Affine3d& imuFromCamera)
 {
     if (times.size() != images.size())
@@ -308,6 +288,14 @@ std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& 
     if (!checkRange(imuFromCamera.matrix) || !(norm(turn * turn.t() - Matx33d::eye()) < .01) ||
             determinant(turn) < 0)
         CV_Error(Error::StsBadArg, "imuFromCamera must be a finite rotation and translation");
+}
+
+}  // namespace
+
+std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& images,
+        const std::vector<ImuReading>& readings, const Affine3d& imuFromCamera)
+{
+    checkArguments(times, images, readings, imuFromCamera);
     std::vector<ImuFrame> frames;
     for (size_t i = 0; i < images.size(); i++)
     {
@@ -318,22 +306,18 @@ std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& 
         frames.push_back(imuFrame(times[i], images[i], inverse(imuFromCamera)));
     }
     limitToScatter(frames);
-    struct Smooth
-    {
-        Affine3d cameraFromWorld;
-        Matx66d covariance;
-    };
-    std::vector<std::optional<Smooth>> smoothed(frames.size());
-    size_t agree = 0, contradict = 0, tooFew = 0;  // images with poses; a few in a row may agree by chance
+    std::vector<std::optional<std::pair<Affine3d, Matx66d>>> smoothed(frames.size());
+    // Images with poses. A few in a row may agree by chance.
+    size_t agree = 0, contradict = 0, tooFew = 0, poses = 0, staying = 0;
     for (size_t i = 0; i < frames.size();)
     {
         Run run;
         if (frames[i].pose)
             run = filtered(frames, readings, i);
         contradict += run.ended;
-        tooFew += run.verdict == Run::SHORT;
+        tooFew += run.isShort;
         const size_t first = i++;
-        if (run.verdict != Run::AGREES)
+        if (run.steps.empty())
             continue;
         smooth(run.steps);
         size_t count = 0;
@@ -354,24 +338,20 @@ std::string smoothPoses(const std::vector<int64>& times, std::vector<Location>& 
         return "the readings of the IMU contradict the images, whose poses stay as they are: check the IMU's "
                "axes and units (radians a second, m/s^2), its clock, imuFromCamera and that the map is in "
                "metres";
-    int poses = 0, staying = 0;
     for (size_t i = 0; i < images.size(); i++)
     {
         poses += images[i].found;
-        if (smoothed[i])
-        {
-            images[i].found = true;
-            images[i].reason = "";
-            images[i].cameraFromWorld = smoothed[i]->cameraFromWorld;
-            images[i].covariance = smoothed[i]->covariance;
-        }
-        else
-            staying += images[i].found;
+        staying += images[i].found && !smoothed[i];
+        if (!smoothed[i])
+            continue;
+        images[i].found = true;
+        images[i].reason = "";
+        std::tie(images[i].cameraFromWorld, images[i].covariance) = *smoothed[i];
     }
     return contradict == 0
                    ? ""
                    : format("the readings of the IMU contradict images: %d of %d poses stay as they are",
-                             staying, poses);
+                             int(staying), int(poses));
 }
 
 }  // namespace cv::iib

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "../map/map_error.hpp"
-#include "../map/mapping.hpp"
-#include "../map/upright.hpp"
-#include "map_in_views.hpp"
+#include "../map/exif_orientation.hpp"
+#include "guided_matches.hpp"
 
 namespace cv::iib {
 namespace {
@@ -47,7 +45,6 @@ void checkPoints(int points)
 //! Checks the arguments, then creates the map's extractor.
 Ptr<IIB> checkedExtractor(const Map& map, int points, bool lines)
 {
-    checkPoints(points);
     if (lines)
         findSegments(Picture());
     if (lines && map.lines.empty())
@@ -125,17 +122,16 @@ std::vector<Match> ImageLocator::matchesOf(
     return matches;
 }
 
-void ImageLocator::locate(const Camera& camera, const Affine3d* prior, LocatedImage& found) const
+void ImageLocator::locate(const Affine3d* prior, LocatedImage& found) const
 {
     const std::vector<Match> matches = matchesOf(found.features, found.compared, prior);
     found.location.reason = "too few matches";
     found.location.matches = found.location.inliers = 0;
     if (matches.size() >= LEAST_INLIERS)
-        findPose(matches, map_, pictures_, camera, found);
+        findPose(matches, map_, pictures_, found);
 }
 
-bool ImageLocator::isMirrored(
-        const Camera& camera, const Mat& image, const Mat& mask, const LocatedImage& found) const
+bool ImageLocator::isMirrored(const Mat& image, const Mat& mask, const LocatedImage& found) const
 {
     Mat mirrored, mirroredMask;
     flip(image, mirrored, 1);
@@ -145,9 +141,9 @@ bool ImageLocator::isMirrored(
     extract(*iib_, mirrored, mirroredMask, features);
     if (features.pixels.empty())
         return false;
-    features.camera = camera;
-    double& centre = features.camera.parameters[focalsOf(camera.model)];
-    centre = camera.size.width - centre;
+    features.camera = found.features.camera;
+    double& centre = features.camera.parameters[focalsOf(features.camera.model)];
+    centre = features.camera.size.width - centre;
     const std::vector<Match> matches = matchesOf(features, similarImages(features.codes), nullptr);
     return matches.size() >= LEAST_INLIERS &&
            countInliers(matches, features.camera) > std::max(found.location.inliers, (int)LEAST_INLIERS);
@@ -161,7 +157,7 @@ std::vector<size_t> ImageLocator::similarImagesInViews(const ImageViews& image) 
         std::vector<float> angles;
         for (int degrees = 0; degrees < 360; degrees += 30)
             angles.push_back((float)degrees);
-        for (const Described& turned : image.coarseOnce(View::reduced(scale), angles))
+        for (const Described& turned : image.coarse(View::reduced(scale), angles))
         {
             if (turned.codes.empty() || turned.codes.cols != iib_->descriptorSize())
                 continue;
@@ -173,8 +169,7 @@ std::vector<size_t> ImageLocator::similarImagesInViews(const ImageViews& image) 
     return best(most.size(), CANDIDATES, [&](size_t a, size_t b) { return most[a] > most[b]; });
 }
 
-void ImageLocator::locateInViews(
-        const Camera& camera, const Mat& image, const Mat& mask, LocatedImage& found) const
+void ImageLocator::locateInViews(const Mat& image, const Mat& mask, LocatedImage& found) const
 {
     const ImageViews views(image, mask, IN_VIEWS);
     found.compared = similarImagesInViews(views);
@@ -187,7 +182,7 @@ void ImageLocator::locateInViews(
         if (matches.size() < LEAST_INLIERS)
             continue;
         LocatedImage other = found;
-        findPose(matches, map_, pictures_, camera, other);
+        findPose(matches, map_, pictures_, other);
         if (other.location.found && other.location.inliers > best.location.inliers)
             best = other;
         if (best.location.found && best.location.inliers > SHARE_CERTAIN * (double)best.location.matches)
@@ -203,12 +198,11 @@ LocatedImage ImageLocator::find(
     checkPhotograph(image.pixels, image.mask, storedCamera.size);
     const Lens checked(storedCamera);
     const Upright upright(image.pixels.size(), image.orientation);
-    const Camera camera = upright.camera(storedCamera);
     const Affine3d turned = storedPrior ? upright.pose(*storedPrior) : Affine3d();
     const Affine3d* const prior = storedPrior ? &turned : nullptr;
     LocatedImage found;
     extract(*iib_, upright.image(image.pixels), upright.image(image.mask), found.features);
-    found.features.camera = camera;
+    found.features.camera = upright.camera(storedCamera);
     found.location.reason = "too few matches";
     if (found.features.pixels.empty())
         return found;
@@ -217,20 +211,20 @@ LocatedImage ImageLocator::find(
     if (prior)
     {
         found.compared = nearestImages(*prior);
-        locate(camera, prior, found);
+        locate(prior, found);
     }
     if (!found.location.found)
     {
         found.compared = similarImages(found.features.codes);
-        locate(camera, nullptr, found);
+        locate(nullptr, found);
     }
     const bool isClear = found.location.inliers > SHARE_CERTAIN * (double)found.location.matches;
     if (!prior && !(found.location.found && isClear))
     {
         const Mat pixels = upright.image(image.pixels), mask = upright.image(image.mask);
         if (!found.location.found)
-            locateInViews(camera, pixels, mask, found);
-        if (isMirrored(camera, pixels, mask, found))
+            locateInViews(pixels, mask, found);
+        if (isMirrored(pixels, mask, found))
         {
             found.location = Location();
             found.location.reason = "the image is mirrored: flip it";

@@ -23,12 +23,12 @@ private:
     //! Matches an image's keypoints with points of some of the map's images.
     std::vector<Match> matchesOf(
             const Features& features, const std::vector<size_t>& compared, const Affine3d* prior) const;
-    void locate(const Camera& camera, const Affine3d* prior, LocatedImage& found) const;
+    void locate(const Affine3d* prior, LocatedImage& found) const;
     //! Whether the mirror image agrees better with the map; symmetric parts of a mirrored image have wrong poses.
-    bool isMirrored(const Camera& camera, const Mat& image, const Mat& mask, const LocatedImage& found) const;
+    bool isMirrored(const Mat& image, const Mat& mask, const LocatedImage& found) const;
     std::vector<size_t> similarImagesInViews(const ImageViews& image) const;
     //! Matches views of the image with views of the map's most similar images.
-    void locateInViews(const Camera& camera, const Mat& image, const Mat& mask, LocatedImage& found) const;
+    void locateInViews(const Mat& image, const Mat& mask, LocatedImage& found) const;
 
     const Map& map_;
     const bool lines_;

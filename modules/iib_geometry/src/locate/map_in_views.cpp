@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "map_in_views.hpp"
-
 #include "../views/view_matches.hpp"
+#include "guided_matches.hpp"
 
 namespace cv::iib {
 namespace {
@@ -16,9 +15,7 @@ std::vector<Match> matchesInViews(const Map& map, size_t view, const ImageViews&
 {
     const MapImage& mapImage = map.images[view];
     const ImageViews picture(mapImage.picture.pixels, Mat(), FEATURES);
-    ViewMatches found = matchAsTheyAre(picture, image);
-    if (!found.isDecisive())
-        searchMatches(picture, image, MOST_TILT, found);
+    const ViewMatches found = matchInSomeViews(picture, image, MOST_TILT);
     std::vector<Match> matches;
     if (!found.isDecisive())
         return matches;
@@ -45,16 +42,8 @@ std::vector<Match> matchesInViews(const Map& map, size_t view, const ImageViews&
         if (nearest < 0)
             continue;
         const Vec2d moved = linear * Vec2d(place - Point2d(found.points1.at<Point2f>(nearest)));
-        Match match;
-        match.pixel = Point2d(found.points2.at<Point2f>(nearest)) + Point2d(moved);
-        match.point = points[row];
-        match.number = mapImage.sees[row];
-        match.bits = cvRound(least);
-        match.keypoint = nearest;
-        match.view = (int)view;
-        match.row = (int)row;
-        match.sizes = Vec2f(1, zoom);
-        matches.push_back(match);
+        matches.push_back({Point2d(found.points2.at<Point2f>(nearest)) + Point2d(moved), points[row],
+                mapImage.sees[row], nearest, cvRound(least), (int)view, (int)row, Vec2f(1, zoom)});
     }
     return matches;
 }

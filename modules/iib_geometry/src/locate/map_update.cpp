@@ -25,12 +25,10 @@ bool atOnePlace(const LocatedImage& seen, const PosedImage& other)
 //! Counts the misses of each code that this update expected to see. Returns the number of dropped codes.
 int countMisses(Map& map, const std::vector<LocatedImage>& all)
 {
-    std::vector<std::vector<uchar>> expected, hit;
+    std::vector<std::vector<uchar>> expected;
     for (const MapImage& image : map.images)
-    {
-        expected.emplace_back(image.sees.size(), uchar(0));
-        hit.emplace_back(image.sees.size(), uchar(0));
-    }
+        expected.emplace_back(image.sees.size());
+    std::vector<std::vector<uchar>> hit = expected;
     for (const LocatedImage& seen : all)
     {
         const Rect2d picture(Point2d(-.5, -.5), Size2d(seen.features.camera.size));
@@ -90,10 +88,9 @@ std::vector<const LocatedImage*> imagesToAdd(const Map& map, const std::vector<L
 
 /** Pairs of images to match: each added image with the map's images it was compared with, and added images near it.
 @param first index of the first added image; added images are the map's last. */
-std::vector<std::pair<size_t, size_t>> pairsOf(
-        const Map& map, size_t first, const std::vector<const LocatedImage*>& added)
+Pairs pairsOf(const Map& map, size_t first, const std::vector<const LocatedImage*>& added)
 {
-    std::vector<std::pair<size_t, size_t>> pairs;
+    Pairs pairs;
     for (size_t n = 0; n < added.size(); n++)
     {
         std::vector<std::pair<double, size_t>> near;
@@ -111,7 +108,7 @@ std::vector<std::pair<size_t, size_t>> pairsOf(
 }
 
 //! Matches the added images of a map and triangulates their points.
-void addPoints(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
+void addPoints(Map& map, const Pairs& pairs)
 {
     MatchedRays matched = matchPairs(map.images, pairs);
     std::set<size_t> involved;
@@ -130,7 +127,7 @@ void addPoints(Map& map, const std::vector<std::pair<size_t, size_t>>& pairs)
                 if (touched.count(ray.point) != 0)
                     matched.rays.push_back(ray);
     }
-    triangulate(map, matched.rays, matched.links);
+    triangulate(map, std::move(matched.rays), std::move(matched.links));
 }
 
 //! Keeps the MAX_ADDED most recently used of the added images at one place.
@@ -187,29 +184,16 @@ Location MapUpdate::add(
         const std::string& name, InputArray image, const Camera& camera, int orientation, InputArray mask)
 {
     const Photograph photograph(image.getMat(), orientation, mask.getMat());
-    {
-        const std::lock_guard<std::mutex> lock(impl_->mutex);
-        impl_->checkOpen();
-        checkName(name);
-        if (!impl_->names.insert(name).second)
-            CV_Error(Error::StsBadArg, "an image named '" + name + "' is already a part of the update");
-    }
-    try
-    {
-        LocatedImage found = impl_->locator.find(photograph, camera);
-        found.features.name = name;
-        const std::lock_guard<std::mutex> lock(impl_->mutex);
-        impl_->checkOpen();
-        if (found.location.found)
-            impl_->seen.push_back(found);
-        return asStored(found.location, photograph);
-    }
-    catch (...)
-    {
-        const std::lock_guard<std::mutex> lock(impl_->mutex);
-        impl_->names.erase(name);
-        throw;
-    }
+    LocatedImage found = impl_->locator.find(photograph, camera);
+    const std::lock_guard<std::mutex> lock(impl_->mutex);
+    impl_->checkOpen();
+    checkName(name);
+    if (!impl_->names.insert(name).second)
+        CV_Error(Error::StsBadArg, "an image named '" + name + "' is already a part of the update");
+    found.features.name = name;
+    if (found.location.found)
+        impl_->seen.push_back(found);
+    return asStored(found.location, photograph);
 }
 
 MapUpdate::Counts MapUpdate::commit()
@@ -245,7 +229,7 @@ MapUpdate::Counts MapUpdate::commit()
     addPoints(map, pairsOf(map, first, added));
     makeRoom(map, added);
     map.compact();
-    impl_->folder.write(map);
+    impl_->folder.write(std::move(map));
     impl_->committed = true;
     return counts;
 }

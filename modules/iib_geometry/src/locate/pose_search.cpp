@@ -60,10 +60,9 @@ std::vector<Match> mostSimilar(const std::vector<Match>& matches)
 class PoseSearch
 {
 public:
-    PoseSearch(const std::vector<Match>& all, const Map& map, PreparedPictures& pictures,
-            const Camera& camera, LocatedImage& found)
+    PoseSearch(const std::vector<Match>& all, const Map& map, PreparedPictures& pictures, LocatedImage& found)
         : map_(map), views_{map, pictures, found.prepared}, found_(found), location_(found.location),
-          frame_(all), lens_(camera), limit_(limitOf(camera)), all_(all)
+          frame_(all), lens_(found.features.camera), limit_(limitOf(found.features.camera)), all_(all)
     {
         for (Match& m : all_)
             m.point = frame_.toLocal(m.point);
@@ -175,25 +174,25 @@ private:
     bool isSignificant() const
     {
         const int sampleSize = 4;
-        const std::vector<Point2d> mapped = lens_.project(inCamera(pointsOf(matches_), pose_));
+        const std::vector<Point2d> mapped = lens_.project(inCamera(matches_, pose_));
         const auto errorOf = [&](int pixel, int point) {
             const Match& match = matches_[size_t(pixel)];
             const double error = norm(match.errorProjection * (mapped[size_t(point)] - match.pixel));
             return std::isnan(error) ? std::numeric_limits<double>::infinity() : error * error;
         };
-        Mat pixels(int(matches_.size()), 2, CV_64F);
+        Points pixels;
         std::vector<double> squared;
-        for (int i = 0; i < pixels.rows; i++)
+        for (const Match& m : matches_)
         {
-            pixels.at<Point2d>(i) = matches_[size_t(i)].pixel;
-            squared.push_back(errorOf(i, i));
+            squared.push_back(errorOf(int(pixels.size()), int(pixels.size())));
+            pixels.push_back(m.pixel);
         }
         const Verdict verdict(pixels, pixels);
         return verdict.logFalseAlarms(squared, errorsOfWrongMatches(verdict, errorOf), Verdict::FROM_POINT,
                        sampleSize, {limit_}) < Verdict::CERTAIN;
     }
 
-    double depth() const { return medianDistance(inCamera(pointsOf(inliers_), pose_)); }
+    double depth() const { return medianDistance(inCamera(inliers_, pose_)); }
 
     bool refine(const std::vector<Match>& matches)
     {
@@ -235,10 +234,10 @@ int countInliers(const std::vector<Match>& all, const Camera& camera)
     return keypointsOf(within(limitOf(camera), matches, lens, pose));
 }
 
-void findPose(const std::vector<Match>& matches, const Map& map, PreparedPictures& pictures,
-        const Camera& camera, LocatedImage& found)
+void findPose(
+        const std::vector<Match>& matches, const Map& map, PreparedPictures& pictures, LocatedImage& found)
 {
-    PoseSearch search(matches, map, pictures, camera, found);
+    PoseSearch search(matches, map, pictures, found);
     if (search.byKeypoints() && search.byGuidedMatches() && search.byLines() && search.isCertain())
         search.writeResult();
 }

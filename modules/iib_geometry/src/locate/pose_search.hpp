@@ -25,8 +25,8 @@ struct LocatedImage
 /** Estimates the pose from matches with points of a map, then from guided matches and lines, and accepts or rejects it.
 @param pictures of the map's images.
 @param found input: features, segments and compared images. Output: all else. */
-void findPose(const std::vector<Match>& matches, const Map& map, PreparedPictures& pictures,
-        const Camera& camera, LocatedImage& found);
+void findPose(
+        const std::vector<Match>& matches, const Map& map, PreparedPictures& pictures, LocatedImage& found);
 
 //! Number of keypoints that agree with the RANSAC pose of the matches; 0 without a pose.
 int countInliers(const std::vector<Match>& matches, const Camera& camera);

@@ -186,36 +186,32 @@ void checkModel(const std::vector<PosedImage>& images, const std::vector<Point3d
     for (const PosedImage& image : images)
     {
         checkName(image.name);
-        const auto refuse = [&](Error::Code code, const std::string& why) {
-            CV_Error(code, "image " + image.name + " " + why);
+        const auto require = [&](bool good, const std::string& why, Error::Code code = Error::StsBadArg) {
+            if (!good)
+                CV_Error(code, "image " + image.name + " " + why);
         };
-        if (!names.insert(image.name).second)
-            refuse(Error::StsBadArg, "is there twice: names must be distinct");
+        require(names.insert(image.name).second, "is there twice: names must be distinct");
         const Lens checked(image.camera);
-        if (uint64_t(std::max(image.camera.size.width, image.camera.size.height)) > LARGEST_SIDE)
-            refuse(Error::StsBadArg,
-                    format("has a camera of %d x %d pixels: at most %d a side", image.camera.size.width,
-                            image.camera.size.height, int(LARGEST_SIDE)));
+        const Size& size = image.camera.size;
+        require(uint64_t(std::max(size.width, size.height)) <= LARGEST_SIDE,
+                format("has a camera of %d x %d pixels: at most %d a side", size.width, size.height,
+                        int(LARGEST_SIDE)));
         const Matx33d rotation = image.cameraFromWorld.rotation();
-        if (!checkRange(image.cameraFromWorld.matrix))
-            refuse(Error::StsBadArg, "has a pose that is not finite");
-        if (!(norm(rotation * rotation.t() - Matx33d::eye()) < ROUNDING && determinant(rotation) > 0))
-            refuse(Error::StsBadArg,
-                    "has a pose that scales, shears or mirrors: give a rotation and a translation");
-        if (image.sees.size() > image.pixels.size())
-            refuse(Error::StsUnmatchedSizes, format("has %d keypoints, but %d indices of their points",
-                                                     int(image.pixels.size()), int(image.sees.size())));
-        for (const Point2d& pixel : image.pixels)
-            if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y))
-                refuse(Error::StsBadArg, "has a keypoint that is not finite");
+        require(checkRange(image.cameraFromWorld.matrix), "has a pose that is not finite");
+        require(norm(rotation * rotation.t() - Matx33d::eye()) < ROUNDING && determinant(rotation) > 0,
+                "has a pose that scales, shears or mirrors: give a rotation and a translation");
+        require(image.sees.size() <= image.pixels.size(),
+                format("has %d keypoints, but %d indices of their points", int(image.pixels.size()),
+                        int(image.sees.size())),
+                Error::StsUnmatchedSizes);
+        require(image.pixels.empty() || checkRange(image.pixels), "has a keypoint that is not finite");
         for (int point : image.sees)
             if (point >= int(points.size()))
                 CV_Error(Error::StsOutOfRange, format("a keypoint of image %s sees point %d of %d points",
                                                        image.name.c_str(), point, int(points.size())));
     }
-    for (const Point3d& point : points)
-        if (!checkRange(Vec3d(point)))
-            CV_Error(Error::StsBadArg, "a point of the model is not finite");
+    if (!points.empty() && !checkRange(points))
+        CV_Error(Error::StsBadArg, "a point of the model is not finite");
 }
 
 //! Appends numbers to the content of a file, little-endian.

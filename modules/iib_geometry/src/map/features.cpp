@@ -19,25 +19,20 @@ public:
     void detect(InputArray image, std::vector<KeyPoint>& keypoints, InputArray mask) override
     {
         const Ptr<Feature2D> detectors[] = {ORB::create(int(each_)), AKAZE::create()};
-        std::vector<std::pair<size_t, KeyPoint>> ranked;
-        for (const Ptr<Feature2D>& detector : detectors)
+        std::vector<KeyPoint> found[2];
+        for (int i : {0, 1})
         {
-            std::vector<KeyPoint> own;
-            detector->detect(image, own, mask);
-            std::stable_sort(own.begin(), own.end(),
+            detectors[i]->detect(image, found[i], mask);
+            std::stable_sort(found[i].begin(), found[i].end(),
                     [](const KeyPoint& a, const KeyPoint& b) { return a.response > b.response; });
-            const float ratio = IIB::scaleFactorFor(detector) / IIB::scaleFactorFor(detectors[0]);
-            for (size_t i = 0; i < std::min(own.size(), each_); i++)
-            {
-                own[i].size *= ratio;
-                ranked.emplace_back(i, own[i]);
-            }
+            for (KeyPoint& k : found[i])
+                k.size *= IIB::scaleFactorFor(detectors[i]) / IIB::scaleFactorFor(detectors[0]);
         }
-        std::stable_sort(
-                ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
         keypoints.clear();
-        for (const auto& [rank, keypoint] : ranked)
-            keypoints.push_back(keypoint);
+        for (size_t rank = 0; rank < each_; rank++)
+            for (const std::vector<KeyPoint>& own : found)
+                if (rank < own.size())
+                    keypoints.push_back(own[rank]);
     }
 
 private:

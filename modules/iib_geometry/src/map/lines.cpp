@@ -79,8 +79,7 @@ std::vector<DMatch> greedyMatches(const std::vector<int>& lines, const Mat& code
 
 }  // namespace
 
-void addLines(
-        Map& map, const std::vector<Segments>& segments, const std::vector<std::pair<size_t, size_t>>& pairs)
+void addLines(Map& map, const std::vector<Segments>& segments, const Pairs& pairs)
 {
     std::vector<Ray> rays;
     std::vector<size_t> first;
@@ -108,7 +107,7 @@ void addLines(
         std::vector<int> numbers(segments[a].places.size());
         std::iota(numbers.begin(), numbers.end(), 0);
         const auto link = [&, one = first[a], other = first[b]](int s, int t, float bits) {
-            return RayMatch{bits, one + 2 * size_t(s), other + 2 * size_t(t)};
+            return RayMatch{bits, uint32_t(one + 2 * size_t(s)), uint32_t(other + 2 * size_t(t))};
         };
         const auto fit = [&](int s, int t) {
             const Ray &one = rays[link(s, t, 0).a], &other = rays[link(s, t, 0).b];
@@ -122,7 +121,7 @@ void addLines(
     std::vector<RayMatch> links;
     for (const std::vector<RayMatch>& some : found)
         links.insert(links.end(), some.begin(), some.end());
-    for (Track& track : tracksOf(rays, links))
+    for (Track& track : tracksOf(rays, std::move(links)))
     {
         MapLine line;
         for (size_t before = 0; before != track.size() && track.size() > 1;)

@@ -2,15 +2,14 @@
 #pragma once
 
 #include "../pose/camera_pose.hpp"
-#include "map.hpp"
+#include "rays.hpp"
 #include "segments.hpp"
 
 namespace cv::iib {
 
 /** Adds triangulated lines to a map.
 @param segments of each image. @param pairs of images to match. */
-void addLines(
-        Map& map, const std::vector<Segments>& segments, const std::vector<std::pair<size_t, size_t>>& pairs);
+void addLines(Map& map, const std::vector<Segments>& segments, const Pairs& pairs);
 
 /** Matches at both ends of the overlap of a line and a segment; only their error across the segment counts. None unless
 the projected line is within `limit` pixels of the segment, parallel to it and overlaps a third of the shorter.

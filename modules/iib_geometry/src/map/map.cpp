@@ -261,14 +261,13 @@ Map readMap(const std::string& folder)
     return map;
 }
 
-void writeMap(const std::string& folder, const Map& map, const std::function<void()>& last)
+void writeMap(const std::string& folder, Map& map, const std::function<void()>& last)
 {
     FileKind kind = KIND;
     kind.version = map.orbAndAkaze || !map.lines.empty() ? 2 : 1;  // earlier programs read version 1 only
     CheckedWriter file(folder + FILE_NAME, kind);
-    Map copy = map;  // archive() also reads, so it needs a mutable map; matrices are shared
     MapFile parts(file);
-    archive(parts, copy, kind.version);
+    archive(parts, map, kind.version);
     file.seal();
     file.finish();  // a full disk ends here, while nothing is replaced yet
     last();

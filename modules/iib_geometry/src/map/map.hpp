@@ -46,8 +46,22 @@ struct Map
 //! @throws cv::Exception for a folder without a map, or with a damaged one.
 Map readMap(const std::string& folder);
 
+//! As buildMap, in memory.
+Map makeMap(const std::string& model, const ImageReader& images, const MapOptions& options,
+        const MappingReport& report);
+
+/** Estimates the map's own error by leave-one-out: the mean squared deviation of some images, located by the points that the others
+triangulate, from their poses in the map. A few images do not span all directions, so an isotropic sample of their mean size is added.
+@return covariance of a camera's centre, in units of the scene's distance, and of a rotation, both in the camera's axes;
+zeros if no point is seen by three images. */
+Matx66d mapError(const Map& map);
+
+//! The map error in the world's axes. @param depth distance to the scene
+Matx66d inWorld(const Matx66d& error, const Affine3d& cameraFromWorld, double depth);
+
 /** Writes a map's file.
+@param map does not change, but reading and writing have one code.
 @param last called when the file is complete on the disk, before it replaces the old one. */
-void writeMap(const std::string& folder, const Map& map, const std::function<void()>& last);
+void writeMap(const std::string& folder, Map& map, const std::function<void()>& last);
 
 }  // namespace cv::iib

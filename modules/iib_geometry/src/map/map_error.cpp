@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "map_error.hpp"
-
-#include <algorithm>
 #include <optional>
 
 #include "../common/parallel.hpp"
 #include "../pose/camera_pose.hpp"
+#include "../pose/two_views.hpp"
 #include "triangulation.hpp"
 
 namespace cv::iib {
@@ -113,7 +111,7 @@ std::optional<Vec6d> poseErrorOf(const MapImage& image, std::vector<Match> match
         if (matches.size() < LEAST_POINTS || !refinePose(matches, lens, pose, covariance))
             return std::nullopt;
     }
-    const double depth = medianDistance(inCamera(pointsOf(matches), pose));
+    const double depth = medianDistance(inCamera(matches, pose));
     const Vec3d moved = known * inverse(pose).translation() * (1 / depth),
                 turned = Affine3d(known.rotation() * pose.rotation().t()).rvec();
     return Vec6d(moved[0], moved[1], moved[2], turned[0], turned[1], turned[2]);
@@ -156,13 +154,9 @@ Matx66d mapError(const Map& map)
 Matx66d inWorld(const Matx66d& error, const Affine3d& cameraFromWorld, double depth)
 {
     const Matx33d toWorld = cameraFromWorld.rotation().t();
-    Matx66d axes = Matx66d::zeros();
-    for (int y = 0; y < 3; y++)
-        for (int x = 0; x < 3; x++)
-        {
-            axes(y, x) = toWorld(y, x) * depth;
-            axes(y + 3, x + 3) = toWorld(y, x);
-        }
+    Matx66d axes;
+    setBlock(axes, 0, 0, toWorld * depth);
+    setBlock(axes, 3, 3, toWorld);
     return axes * error * axes.t();
 }
 

@@ -35,7 +35,7 @@ MapFolder::MapFolder(const std::string& folder)
 {
 }
 
-void MapFolder::write(const Map& map) const
+void MapFolder::write(Map map) const
 {
     writeMap(folder_.path(), map, [&] {
         writeModel(folder_.path(), {map.images.begin(), map.images.end()}, map.points);

@@ -16,7 +16,7 @@ public:
     /** Writes the map's file and, for other programs, a COLMAP model. Concurrent readers get the old map or the new
     one.
     @throws cv::Exception if the map cannot be written; the old map then stays. */
-    void write(const Map& map) const;
+    void write(Map map) const;
 
 private:
     std::vector<std::string> leftovers_;  // unfinished files of a killed process

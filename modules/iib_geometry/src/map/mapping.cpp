@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "mapping.hpp"
-
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -10,22 +8,18 @@
 
 #include "../common/parallel.hpp"
 #include "../pose/camera_pose.hpp"
-#include "colmap_model.hpp"
 #include "features.hpp"
 #include "lines.hpp"
 #include "map_folder.hpp"
 #include "triangulation.hpp"
-#include "upright.hpp"
+#include "exif_orientation.hpp"
 
 namespace cv::iib {
 namespace {
 
-constexpr size_t NEIGHBOURS = 20;  // images that each image is matched with
-constexpr size_t MAX_TRACK = 30;   // images of a point that count as covisible
-constexpr double LEAST_CONSISTENT =
-        .1;  // share of matches that fit the poses, unless the poses are of other images
-
-typedef std::vector<std::pair<size_t, size_t>> Pairs;
+constexpr size_t NEIGHBOURS = 20;        // images that each image is matched with
+constexpr size_t MAX_TRACK = 30;         // images of a point that count as covisible
+constexpr double LEAST_CONSISTENT = .1;  // share of matches that fit the poses, if they are of these images
 
 //! The number of points that each image shares with every other.
 std::vector<std::map<size_t, int>> countShared(const std::vector<PosedImage>& images)
@@ -66,28 +60,6 @@ Pairs covisible(const std::vector<PosedImage>& images)
     }
     return {pairs.begin(), pairs.end()};
 }
-
-//! Reports progress from several threads.
-class Progress
-{
-public:
-    Progress(size_t all, const MappingReport& report) : all_(all), report_(report) {}
-
-    //! @param problem with an image that is left out, or empty.
-    void step(const std::string& problem = "")
-    {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        done_++;
-        if (report_)
-            report_(done_, all_, problem);
-    }
-
-private:
-    const size_t all_;
-    const MappingReport& report_;
-    size_t done_ = 0;
-    std::mutex mutex_;
-};
 
 //! Why an image is left out, to follow its name; empty if it is not.
 std::string problemOf(const Photograph& photograph, const Size& size)
@@ -143,8 +115,9 @@ float angleTo(const Vec3d& up, const Affine3d& cameraFromWorld)
     return std::min(angle, 360 - angle) < least ? -1 : angle;
 }
 
-void describeImages(
-        std::vector<MapImage>& images, const ImageReader& read, const MapOptions& options, Progress& progress)
+//! @param step called after each image, by several threads, with the problem of an image that is left out.
+void describeImages(std::vector<MapImage>& images, const ImageReader& read, const MapOptions& options,
+        const std::function<void(const std::string&)>& step)
 {
     const Ptr<IIB> iib = extractorOf(options.orbAndAkaze, options.points);
     const Vec3d up = commonUp(images);
@@ -164,7 +137,7 @@ void describeImages(
         image.codes.create(int(image.pixels.size()), iib->descriptorSize(), CV_8U);  // also without keypoints
         if (!problem.empty())
             problem = image.name + problem + ": left out of the map";
-        progress.step(problem);
+        step(problem);
     });
     if (std::any_of(images.begin(), images.end(), [](const MapImage& i) { return !i.pixels.empty(); }))
         return;
@@ -195,24 +168,30 @@ Map makeMap(const std::string& model, const ImageReader& read, const MapOptions&
     checkOptions(options);
     const std::vector<PosedImage> known = readModel(model);
     const Pairs pairs = covisible(known);
-    Progress progress(known.size() + pairs.size(), report);
+    std::mutex mutex;
+    size_t done = 0;
+    const auto step = [&](const std::string& problem) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        done++;
+        if (report)
+            report(done, known.size() + pairs.size(), problem);
+    };
     Map map;
     map.keypoints = options.points;
     map.orbAndAkaze = options.orbAndAkaze;
     for (const PosedImage& image : known)
     {
         map.images.emplace_back();
-        map.images.back().name = image.name;
-        map.images.back().camera = image.camera;
-        map.images.back().cameraFromWorld = image.cameraFromWorld;
+        static_cast<PosedImage&>(map.images.back()) = {
+                image.name, image.camera, image.cameraFromWorld, {}, {}};
     }
-    describeImages(map.images, read, options, progress);
-    const MatchedRays matched = matchPairs(map.images, pairs, [&] { progress.step(); });
+    describeImages(map.images, read, options, step);
+    MatchedRays matched = matchPairs(map.images, pairs, [&] { step(""); });
     if (double(matched.consistent) <= LEAST_CONSISTENT * double(matched.matches))
         CV_Error(Error::StsError,
                 format("only %d of %d matches fit the poses: is this the model of these images?",
                         int(matched.consistent), int(matched.matches)));
-    triangulate(map, matched.rays, matched.links);
+    triangulate(map, std::move(matched.rays), std::move(matched.links));
     if (map.points.empty())
         CV_Error(Error::StsError, model + ": no point was seen from two places");
     map.compact();
@@ -228,7 +207,6 @@ Map makeMap(const std::string& model, const ImageReader& read, const MapOptions&
 void buildMap(const std::string& model, const ImageReader& images, const std::string& map,
         const MapOptions& options, const MappingReport& report)
 {
-    checkOptions(options);
     const MapFolder folder(map);
     folder.write(makeMap(model, images, options, report));
 }

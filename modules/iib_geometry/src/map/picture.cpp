@@ -50,6 +50,12 @@ PreparedPicture PreparedPictures::of(size_t number, const Picture& picture)
     return prepared_[number] = made;
 }
 
+void PreparedPictures::release(size_t number)
+{
+    const std::lock_guard<std::mutex> lock(mutex_);
+    prepared_[number] = PreparedPicture();
+}
+
 std::vector<bool> refine(const PreparedPicture& fixed, const PreparedPicture& moved, KeypointPairs& pairs)
 {
     std::vector<DMatch> matches;

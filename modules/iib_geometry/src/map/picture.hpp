@@ -32,6 +32,8 @@ class PreparedPictures
 public:
     explicit PreparedPictures(size_t count) : prepared_(count) {}
     PreparedPicture of(size_t number, const Picture& picture);
+    //! Frees a picture that is no longer needed.
+    void release(size_t number);
 
 private:
     std::mutex mutex_;

@@ -75,8 +75,8 @@ std::vector<Ray> raysOf(size_t number, const PosedImage& image)
     return rays;
 }
 
-MatchedRays matchPairs(const std::vector<MapImage>& images,
-        const std::vector<std::pair<size_t, size_t>>& pairs, const std::function<void()>& step)
+MatchedRays matchPairs(
+        const std::vector<MapImage>& images, const Pairs& pairs, const std::function<void()>& step)
 {
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::createRecommended();
     MatchedRays found;
@@ -106,7 +106,8 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
             matcher->match(codes, others, guided, nearEpipolar(raysFrom(a), raysFrom(b)));
         }
         const auto linkOf = [&](const DMatch& m) {
-            return RayMatch{m.distance, first[a] + size_t(m.queryIdx), first[b] + size_t(m.trainIdx)};
+            return RayMatch{m.distance, uint32_t(first[a] + size_t(m.queryIdx)),
+                    uint32_t(first[b] + size_t(m.trainIdx))};
         };
         const auto fits = [&](const DMatch& m) {
             return areConsistent(found.rays[linkOf(m).a], found.rays[linkOf(m).b]);
@@ -122,6 +123,7 @@ MatchedRays matchPairs(const std::vector<MapImage>& images,
         found.matches += counts[n].first;
         found.consistent += counts[n].second;
         found.links.insert(found.links.end(), links[n].begin(), links[n].end());
+        links[n] = {};
     }
     return found;
 }

@@ -27,8 +27,11 @@ std::vector<Ray> raysOf(size_t number, const PosedImage& image);
 struct RayMatch
 {
     float bits;
-    size_t a, b;
+    uint32_t a, b;
 };
+
+//! Pairs of images, by index.
+typedef std::vector<std::pair<size_t, size_t>> Pairs;
 
 //! The result of matching pairs of images.
 struct MatchedRays
@@ -41,7 +44,6 @@ struct MatchedRays
 
 //! Matches keypoints of pairs of images. @param step called after each pair, by several threads.
 MatchedRays matchPairs(
-        const std::vector<MapImage>& images, const std::vector<std::pair<size_t, size_t>>& pairs,
-        const std::function<void()>& step = [] {});
+        const std::vector<MapImage>& images, const Pairs& pairs, const std::function<void()>& step = [] {});
 
 }  // namespace cv::iib

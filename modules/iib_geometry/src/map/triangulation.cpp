@@ -113,35 +113,44 @@ void refineTracks(std::vector<Track>& tracks, std::vector<MapImage>& images)
             if (ray.point < 0 && ray.image != reference.image)
                 jobs[{reference.image, ray.image}].emplace_back(reference.keypoint, ray.keypoint);
     }
-    const std::vector<std::pair<std::pair<size_t, size_t>, std::vector<std::pair<int, int>>>> list(
-            jobs.begin(), jobs.end());
+    std::vector<const decltype(jobs)::value_type*> list;
+    std::vector<std::atomic<int>> uses(images.size());
+    for (const auto& job : jobs)
+    {
+        list.push_back(&job);
+        for (size_t i : {job.first.first, job.first.second})
+            uses[i]++;
+    }
     PreparedPictures prepared(images.size());
     inParallel(list.size(), [&](size_t n) {
-        const MapImage& fixed = images[list[n].first.first];
-        MapImage& moved = images[list[n].first.second];
+        const auto& [numbers, keypoints] = *list[n];
+        const MapImage& fixed = images[numbers.first];
+        MapImage& moved = images[numbers.second];
         if (fixed.picture.pixels.empty() || moved.picture.pixels.empty())
             return;
         KeypointPairs pairs;
-        for (const auto& [a, b] : list[n].second)
+        for (const auto& [a, b] : keypoints)
         {
             pairs.fixed.emplace_back(fixed.pixels[size_t(a)], fixed.sizes[size_t(a)]);
             pairs.moved.emplace_back(moved.pixels[size_t(b)], moved.sizes[size_t(b)]);
         }
-        refine(prepared.of(list[n].first.first, fixed.picture),
-                prepared.of(list[n].first.second, moved.picture), pairs);
-        for (size_t i = 0; i < pairs.moved.size();
-                i++)  // no other job writes these: a keypoint has one track
-            moved.pixels[size_t(list[n].second[i].second)] = pairs.moved[i].pt;
+        refine(prepared.of(numbers.first, fixed.picture), prepared.of(numbers.second, moved.picture), pairs);
+        for (size_t i = 0; i < keypoints.size(); i++)  // no other job writes these: a keypoint has one track
+            moved.pixels[size_t(keypoints[i].second)] = pairs.moved[i].pt;
+        for (size_t i : {numbers.first, numbers.second})
+            if (--uses[i] == 0)
+                prepared.release(i);
     });
-    std::map<size_t, std::vector<Ray>> rays;
+    std::vector<std::vector<Ray*>> rays(images.size());
     for (Track& track : tracks)
         for (Ray& ray : track)
-        {
-            std::vector<Ray>& own = rays[ray.image];
-            if (own.empty())
-                own = raysOf(ray.image, images[ray.image]);
-            ray.direction = own[size_t(ray.keypoint)].direction;
-        }
+            rays[ray.image].push_back(&ray);
+    for (size_t i = 0; i < images.size(); i++)
+    {
+        const std::vector<Ray> own = rays[i].empty() ? Track() : raysOf(i, images[i]);
+        for (Ray* ray : rays[i])
+            ray->direction = own[size_t(ray->keypoint)].direction;
+    }
 }
 
 }  // namespace
@@ -164,9 +173,10 @@ bool triangulatePoint(Track& track, Point3d& point)
     return widest * 180 / CV_PI >= MIN_ANGLE;
 }
 
-void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<RayMatch>& links)
+void triangulate(Map& map, std::vector<Ray> rays, std::vector<RayMatch> links)
 {
-    std::vector<Track> tracks = tracksOf(rays, links);
+    std::vector<Track> tracks = tracksOf(rays, std::move(links));
+    rays = {};  // before more memory is needed
     refineTracks(tracks, map.images);
     for (Track& track : tracks)
     {

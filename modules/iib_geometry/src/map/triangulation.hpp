@@ -17,6 +17,6 @@ bool triangulatePoint(Track& track, Point3d& point);
 
 /** Triangulates the points of a map, as triangulatePoint does. Keypoints without a point are first refined against one
 keypoint of their track. */
-void triangulate(Map& map, const std::vector<Ray>& rays, const std::vector<RayMatch>& links);
+void triangulate(Map& map, std::vector<Ray> rays, std::vector<RayMatch> links);
 
 }  // namespace cv::iib

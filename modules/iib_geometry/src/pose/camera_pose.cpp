@@ -14,8 +14,8 @@ namespace {
 
 constexpr int ROUNDS = 20;
 constexpr int CLUSTERS = 4;  // across and down the area that the matches span in the image
-constexpr double LEAST_CURVATURE =
-        1e-12;  // smallest over largest eigenvalue of the curvature: below, the pose is not determined
+// Smallest over largest eigenvalue of the curvature: below, the pose is not determined.
+constexpr double LEAST_CURVATURE = 1e-12;
 
 }  // namespace
 
@@ -23,13 +23,12 @@ constexpr double LEAST_CURVATURE =
 // -R dc with the centre, and by R [X - c]x dw with the rotation.
 std::vector<LinearMatch> linearize(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
 {
-    const std::vector<Point3d> points = pointsOf(matches);
     std::vector<Matx23d> byPoint;
-    const std::vector<Point2d> mapped = lens.project(inCamera(points, pose), &byPoint);
+    const std::vector<Point2d> mapped = lens.project(inCamera(matches, pose), &byPoint);
     const Matx33d rotation = pose.rotation();
     const Vec3d centre = inverse(pose).translation();
-    std::vector<LinearMatch> found(points.size());
-    for (size_t i = 0; i < points.size(); i++)
+    std::vector<LinearMatch> found(matches.size());
+    for (size_t i = 0; i < matches.size(); i++)
     {
         const Point2d error = matches[i].errorProjection * (matches[i].pixel - mapped[i]);
         const double weight = 1 / (matches[i].deviation * matches[i].deviation + error.dot(error));
@@ -37,13 +36,8 @@ std::vector<LinearMatch> linearize(const std::vector<Match>& matches, const Lens
             continue;
         // derivatives by the point, in the world's axes
         const Matx23d byMoved = matches[i].errorProjection * byPoint[i] * rotation;
-        const Matx23d byTurn = byMoved * crossProduct(Vec3d(points[i]) - centre);
-        for (int row = 0; row < 2; row++)
-            for (int column = 0; column < 3; column++)
-            {
-                found[i].byPose(row, column) = -byMoved(row, column);
-                found[i].byPose(row, 3 + column) = byTurn(row, column);
-            }
+        setBlock(found[i].byPose, 0, 0, -byMoved);
+        setBlock(found[i].byPose, 0, 3, byMoved * crossProduct(Vec3d(matches[i].point) - centre));
         found[i].error = {error.x, error.y};
         found[i].weight = weight;
     }
@@ -55,23 +49,6 @@ Affine3d moved(const Affine3d& pose, const Vec6d& step)
     const Vec3d centre = inverse(pose).translation() + Vec3d(step.val);
     const Matx33d rotation = pose.rotation() * Affine3d(-Vec3d(step.val + 3)).rotation();
     return {rotation, -(rotation * centre)};
-}
-
-std::vector<Point3d> pointsOf(const std::vector<Match>& matches)
-{
-    std::vector<Point3d> points;
-    for (const Match& m : matches)
-        points.push_back(m.point);
-    return points;
-}
-
-double median(std::vector<double> values)
-{
-    if (values.empty())
-        return 0;
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 double distance(const Affine3d& a, const Affine3d& b, double depth)
@@ -110,11 +87,8 @@ Affine3d Frame::toWorld(const Affine3d& cameraFromLocal) const
 
 Matx66d Frame::toWorld(const Matx66d& covariance) const
 {
-    Matx66d scaled = covariance;
-    for (int i = 0; i < 6; i++)
-        for (int k = 0; k < 6; k++)
-            scaled(i, k) *= (i < 3 ? unit : 1) * (k < 3 ? unit : 1);
-    return scaled;
+    const Matx66d scale = Matx66d::diag({unit, unit, unit, 1, 1, 1});
+    return scale * covariance * scale;
 }
 
 std::vector<Point3d> inCamera(const std::vector<Point3d>& points, const Affine3d& pose)
@@ -125,9 +99,17 @@ std::vector<Point3d> inCamera(const std::vector<Point3d>& points, const Affine3d
     return moved;
 }
 
+std::vector<Point3d> inCamera(const std::vector<Match>& matches, const Affine3d& pose)
+{
+    std::vector<Point3d> moved;
+    for (const Match& m : matches)
+        moved.push_back(pose * m.point);
+    return moved;
+}
+
 std::vector<double> errorsOf(const std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
 {
-    const std::vector<Point2d> mapped = lens.project(inCamera(pointsOf(matches), pose));
+    const std::vector<Point2d> mapped = lens.project(inCamera(matches, pose));
     std::vector<double> errors;
     for (size_t i = 0; i < matches.size(); i++)
         errors.push_back(norm(matches[i].errorProjection * (mapped[i] - matches[i].pixel)));
@@ -157,16 +139,13 @@ double deviationOf(const std::vector<double>& errors) { return median(errors) / 
 
 bool poseByRansac(const std::vector<Match>& matches, const Lens& lens, double limit, Affine3d& pose)
 {
-    std::vector<Point2d> pixels, seen;
-    for (const Match& m : matches)
-        seen.push_back(m.pixel);
+    std::vector<Point2d> pixels;
     std::vector<Point3d> points;
-    const std::vector<Point2d> straight = lens.undistorted(seen);
-    for (size_t i = 0; i < matches.size(); i++)
-        if (std::isfinite(straight[i].x))
+    for (const Match& m : matches)
+        if (const Point2d straight = lens.undistorted({m.pixel})[0]; std::isfinite(straight.x))
         {
-            pixels.push_back(straight[i]);
-            points.push_back(matches[i].point);
+            pixels.push_back(straight);
+            points.push_back(m.point);
         }
     if (points.size() < 4)
         return false;

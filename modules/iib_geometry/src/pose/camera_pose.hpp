@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "../common/points.hpp"
 #include "lens.hpp"
 
 namespace cv::iib {
@@ -27,9 +28,6 @@ inline Affine3d inverse(const Affine3d& pose)
     const Matx33d back = pose.rotation().t();
     return {back, -(back * pose.translation())};
 }
-
-//! The median; 0 if `values` is empty.
-double median(std::vector<double> values);
 
 //! Distance of two cameras' centres over `depth`, plus the angle between their optical axes in radians.
 double distance(const Affine3d& a, const Affine3d& b, double depth);
@@ -96,9 +94,8 @@ double medianDistance(const std::vector<Point3d>& points);
 //! Standard deviation per coordinate, from the median length of errors, as of Rayleigh's distribution.
 double deviationOf(const std::vector<double>& errors);
 
-std::vector<Point3d> pointsOf(const std::vector<Match>& matches);
-
 //! Transforms points from the world's to the camera's axes.
 std::vector<Point3d> inCamera(const std::vector<Point3d>& points, const Affine3d& pose);
+std::vector<Point3d> inCamera(const std::vector<Match>& matches, const Affine3d& pose);
 
 }  // namespace cv::iib

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "../precomp.hpp"
 #include "five_points.hpp"
@@ -17,15 +16,11 @@ const double MOST_SCALE = .01;  // of the points' span: at wider scales, wrong p
 const double NOWHERE = 1e-300;  // avoids 0 / 0 at the epipoles
 const int STEPS = 6;            // five parameters, padded to an even number for vectorization
 
-std::vector<Point2d> directions(const Mat& points, const Matx33d& camera)
+Points directions(Points points, const Matx33d& camera)
 {
-    std::vector<Point2d> rays(points.rows);
-    for (int i = 0; i < points.rows; i++)
-    {
-        const double* p = points.ptr<double>(i);
-        rays[i] = Point2d((p[0] - camera(0, 2)) / camera(0, 0), (p[1] - camera(1, 2)) / camera(1, 1));
-    }
-    return rays;
+    for (Point2d& p : points)
+        p = {(p.x - camera(0, 2)) / camera(0, 0), (p.y - camera(1, 2)) / camera(1, 1)};
+    return points;
 }
 
 //! The rotation that best turns the first directions to the second ones, weighted (Kabsch 1976).
@@ -58,7 +53,7 @@ inline double squaredErrorOf(const Matx33d& E, const Vec4d& weights, const Point
 }  // namespace
 
 EpipolarProblem::EpipolarProblem(
-        const Mat& points1, const Mat& points2, const Matx33d& camera1, const Matx33d& camera2)
+        const Points& points1, const Points& points2, const Matx33d& camera1, const Matx33d& camera2)
     : first_(directions(points1, camera1)),
       second_(directions(points2, camera2)), pixels_{1 / camera2(0, 0), 1 / camera2(1, 1), 1 / camera1(0, 0),
                                                      1 / camera1(1, 1)}
@@ -84,24 +79,19 @@ EpipolarProblem EpipolarProblem::subset(const std::vector<bool>& marks) const
 
 std::vector<int> EpipolarProblem::alikeTheirNeighbours(const std::vector<int>& matches) const
 {
-    const double farthest = .1,
-                 nearest = .01;  // of the span; matches that are nearer are often wrong together
-    const double unlike =
-            .5;  // of the distance between two matches: largest difference of their displacements
+    const double farthest = .1, nearest = .01;  // of the span; nearer matches are often wrong together
+    const double unlike = .5;  // largest difference of two displacements, over the distance of the matches
     const int enough = 2;
     const size_t most = 1000;  // matches: more take time
     std::vector<int> order, counts(size());
     for (size_t i = 0, step = (matches.size() + most - 1) / most; i < matches.size(); i += step)
         order.push_back(matches[i]);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return first_[a].x < first_[b].x; });
-    double top = std::numeric_limits<double>::infinity(), bottom = -top;
-    for (int i : order)
-    {
-        top = std::min(top, first_[i].y);
-        bottom = std::max(bottom, first_[i].y);
-    }
-    const double span =
-            order.empty() ? 0 : std::hypot(bottom - top, first_[order.back()].x - first_[order[0]].x);
+    const auto [top, bottom] = std::minmax_element(
+            order.begin(), order.end(), [&](int a, int b) { return first_[a].y < first_[b].y; });
+    const double span = order.empty() ? 0
+                                      : std::hypot(first_[*bottom].y - first_[*top].y,
+                                                first_[order.back()].x - first_[order[0]].x);
     for (size_t a = 0; a < order.size(); a++)
         for (size_t b = a + 1; b < order.size(); b++)
         {
@@ -195,22 +185,26 @@ double EpipolarProblem::parallax(const RelativePose& pose, int first, int second
                       : std::numeric_limits<double>::infinity();
 }
 
+std::vector<double> EpipolarProblem::parallaxes(const RelativePose& pose) const
+{
+    std::vector<double> all;
+    for (int i = 0; i < size(); i++)
+        all.push_back(parallax(pose, i, i));
+    return all;
+}
+
 std::vector<double> EpipolarProblem::leastParallaxes(
         const RelativePose& pose, const std::vector<double>& squared, double limit) const
 {
     const int rounds = 5;
     RelativePose turned = pose;
-    std::vector<double> parallaxes(size());
-    for (int round = 0; round <= rounds; round++)
+    for (int round = 0; round < rounds; round++)
     {
-        for (int i = 0; i < size(); i++)
-            parallaxes[i] = parallax(turned, i, i);
-        if (round < rounds)
-            turned.R = rotationBetween(first_.data(), second_.data(), size(), [&](int i) {
-                return squared[i] < square(limit) ? 1 / (square(limit) + square(parallaxes[i])) : 0;
-            });
+        const std::vector<double> all = parallaxes(turned);
+        turned.R = rotationBetween(first_.data(), second_.data(), size(),
+                [&](int i) { return squared[i] < square(limit) ? 1 / (square(limit) + square(all[i])) : 0; });
     }
-    return parallaxes;
+    return parallaxes(turned);
 }
 
 //! The essential matrix of a pose and its derivatives.
@@ -225,11 +219,7 @@ struct EpipolarProblem::Linear
         const Matx<double, 3, 2> tangents = tangentsOf(pose.t);
         for (int k = 0; k < 5; k++)
         {
-            Vec3d axis;
-            if (k < 3)
-                axis[k] = 1;
-            else
-                axis = Vec3d(tangents(0, k - 3), tangents(1, k - 3), tangents(2, k - 3));
+            const Vec3d axis(k < 3 ? Matx33d::eye().col(k).val : tangents.col(k - 3).val);
             const Matx33d changes = k < 3 ? cross * crossProduct(axis) * pose.R : crossProduct(axis) * pose.R;
             for (int e = 0; e < 9; e++)
                 byStep[e][k] = changes.val[e];
@@ -339,8 +329,7 @@ Vec3d EpipolarProblem::planeOf(const RelativePose& pose, double scale) const
 std::vector<RelativePose> EpipolarProblem::rivals(const RelativePose& pose, double scale) const
 {
     const Matx33d homography = pose.R + pose.t * planeOf(pose, scale).t();
-    const double mostOff =
-            .1;  // of R R' from 1: the decomposition of a degenerate homography gives no rotations
+    const double mostOff = .1;  // of R R' from 1: a degenerate homography gives no rotations
     std::vector<Mat> rotations, translations, normals;
     std::vector<RelativePose> poses;
     if (!checkRange(homography))
@@ -408,8 +397,7 @@ std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
         }
         const double left =
                 1 - most * (noise(3, 3) + noise(4, 4)) / (square(r.J[3]) + square(r.J[4]) + NOWHERE);
-        // Indexed by how many of the two parameters belong to the direction: the share of the row that stays, and the share of its
-        // noise.
+        // The shares of the row and of its noise that stay, for entries with 0, 1 or 2 parameters of the direction.
         const double shares[] = {1, std::sqrt(std::max(left, 0.)), std::max(left, 0.)}, kept[] = {1, .5, .25};
         for (int a = 0; a < Step::channels; a++)
             for (int b = 0; b <= a; b++)

@@ -14,8 +14,9 @@ public:
     typedef RelativePose Model;
     typedef Vec<double, 5> Step;
 
-    //! Both N x 2, CV_64F, pixels; matrices of cameras without skew.
-    EpipolarProblem(const Mat& points1, const Mat& points2, const Matx33d& camera1, const Matx33d& camera2);
+    //! Points in pixels; matrices of cameras without skew.
+    EpipolarProblem(
+            const Points& points1, const Points& points2, const Matx33d& camera1, const Matx33d& camera2);
 
     //! The same problem with the marked matches only.
     EpipolarProblem subset(const std::vector<bool>& marks) const;
@@ -44,6 +45,7 @@ public:
             const RelativePose& pose, const Matx33d& essential, int first, int second, double farthest) const;
     //! Parallax in pixels: the match's distance from a point at infinity, shared by both images as in Sampson's error.
     double parallax(const RelativePose& pose, int first, int second) const;
+    std::vector<double> parallaxes(const RelativePose& pose) const;
 
     /** Parallaxes of all matches under the rotation that minimizes those of the matches within a limit. A small rotation can look
     like a sideways translation, and this removes that part.
@@ -68,9 +70,9 @@ private:
     Vec3d planeOf(const RelativePose& pose, double scale) const;
     Row<Step> row(const Linear& linear, const Point2d& first, const Point2d& second) const;
 
-    std::vector<Point2d> first_, second_;  // directions, third coordinate 1
-    double pixels_[4];  // size of a pixel: 1 / focal lengths, of camera 2, then of camera 1
-    Vec4d weights_;     // their squares, which weight the four terms of Sampson's denominator
+    Points first_, second_;  // directions, third coordinate 1
+    double pixels_[4];       // size of a pixel: 1 / focal lengths, of camera 2, then of camera 1
+    Vec4d weights_;          // their squares, which weight the four terms of Sampson's denominator
     double mostScale_;
 };
 

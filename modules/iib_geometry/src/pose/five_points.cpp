@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "real_roots.hpp"
-
 namespace cv::iib {
 namespace {
 

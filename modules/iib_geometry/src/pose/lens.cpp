@@ -216,16 +216,16 @@ std::vector<Point2d> Lens::undistorted(const std::vector<Point2d>& pixels) const
     {
         const Vec2d seen((p.x - matrix_(0, 2)) / matrix_(0, 0), (p.y - matrix_(1, 2)) / matrix_(1, 1));
         Vec2d ray = seen * std::min(1., .9 * range_ / norm(seen)), step(1, 1);
-        double error = norm(distorted(ray) - seen);
+        const auto errorAt = [&](const Vec2d& at) { return norm(distorted(at) - seen); };
+        double error = errorAt(ray);
         for (int round = 0; round < ROUNDS && norm(step) > 1e-12 * (1 + norm(ray)); round++)
         {
-            step = slope(ray).inv() *
-                   (seen - distorted(ray));  // Newton's step, shortened until the error falls
+            step = slope(ray).inv() * (seen - distorted(ray));
             if (!std::isfinite(norm(step)))  // no ray reaches this pixel
                 break;
-            double next = norm(distorted(ray + step) - seen);
+            double next = errorAt(ray + step);  // Newton's step is shortened until the error falls
             for (; !(next < error && norm(ray + step) <= range_) && norm(step) > 1e-12 * (1 + norm(ray));
-                    next = norm(distorted(ray + step) - seen))
+                    next = errorAt(ray + step))
                 step *= .5;
             if (next < error)
             {

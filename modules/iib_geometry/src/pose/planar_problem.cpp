@@ -12,55 +12,32 @@ const int STRIDE = 16;
 //! Before the horizon, the determinant of the derivatives by a point has the sign of det T.
 bool mirrors(const Matx33d& T) { return !(determinant(T) > 0); }
 
-Matx33d entry(int row, int column, double value = 1)
+std::vector<Vec3d> transformed(const Points& points, const Matx33d& by)
 {
-    Matx33d m;
-    m(row, column) = value;
-    return m;
-}
-
-std::vector<Matx33d> basisOf(int kind)
-{
-    std::vector<Matx33d> basis = {entry(0, 2), entry(1, 2)};
-    if (kind == ALIGN_SIMILARITY)
-        basis.insert(basis.end(), {entry(0, 0) + entry(1, 1), entry(1, 0) - entry(0, 1)});
-    if (kind >= ALIGN_AFFINE)
-        basis.insert(basis.end(), {entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1)});
-    if (kind == ALIGN_HOMOGRAPHY)
-        basis.insert(basis.end(), {entry(2, 0), entry(2, 1)});
-    return basis;
-}
-
-Vec2d meanOf(const Mat& points)
-{
-    const Scalar mean = cv::mean(points.reshape(2));
-    return Vec2d(mean[0], mean[1]);
-}
-
-std::vector<Vec3d> transformed(const Mat& points, const Matx33d& by)
-{
-    std::vector<Vec3d> result(points.rows);
-    for (int i = 0; i < points.rows; i++)
-        result[i] = by * Vec3d(points.at<double>(i, 0), points.at<double>(i, 1), 1);
+    std::vector<Vec3d> result;
+    for (const Point2d& p : points)
+        result.push_back(by * Vec3d(p.x, p.y, 1));
     return result;
 }
 
 }  // namespace
 
-PlanarProblem::PlanarProblem(const Mat& reference, const Mat& image, int kind) : basis_(basisOf(kind))
+PlanarProblem::PlanarProblem(const Points& reference, const Points& image, int kind)
+    : entries_{{0, 0, 2, 1}, {1, 1, 2, 1}}
 {
-    for (int k = 0; k < parameters(); k++)
-        for (int row = 0; row < 3; row++)
-            for (int column = 0; column < 3; column++)
-                if (basis_[k](row, column) != 0)
-                    entries_.push_back({k, row, column, basis_[k](row, column)});
+    if (kind == ALIGN_SIMILARITY)
+        entries_.insert(entries_.end(), {{2, 0, 0, 1}, {2, 1, 1, 1}, {3, 0, 1, -1}, {3, 1, 0, 1}});
+    if (kind >= ALIGN_AFFINE)
+        entries_.insert(entries_.end(), {{2, 0, 0, 1}, {3, 0, 1, 1}, {4, 1, 0, 1}, {5, 1, 1, 1}});
+    if (kind == ALIGN_HOMOGRAPHY)
+        entries_.insert(entries_.end(), {{6, 2, 0, 1}, {7, 2, 1, 1}});
     if (image.empty())
         return;
     // one unit for both images, so that a translation stays a translation
-    const Vec2d from = meanOf(reference), to = meanOf(image);
+    const Scalar from = mean(reference), to = mean(image);
     double spread = 1;
-    for (int i = 0; i < image.rows; i++)
-        spread = std::max(spread, norm(image.at<Vec2d>(i) - to));
+    for (const Point2d& p : image)
+        spread = std::max(spread, norm(Vec2d(p.x - to[0], p.y - to[1])));
     fromReference_ = Matx33d(1 / spread, 0, -from[0] / spread, 0, 1 / spread, -from[1] / spread, 0, 0, 1);
     fromImage_ = Matx33d(1 / spread, 0, -to[0] / spread, 0, 1 / spread, -to[1] / spread, 0, 0, 1);
     reference_ = transformed(reference, fromReference_);
@@ -74,17 +51,15 @@ void PlanarProblem::propose(const std::vector<int>& sample, std::vector<Matx33d>
 {
     transforms.clear();
     const int n = parameters();
-    Mat A(n, n, CV_64F), b(n, 1, CV_64F), s;
+    Mat A(n, n, CV_64F, Scalar(0)), b(n, 1, CV_64F), s;
     for (int i = 0; i < n; i++)
     {
         const Vec3d &p = image_[sample[i / 2]], &r = reference_[sample[i / 2]];
         const int c = i % 2;
         b.at<double>(i) = r[c] - p[c];
-        for (int k = 0; k < n; k++)
-        {
-            const Vec3d moved = basis_[k] * p;
-            A.at<double>(i, k) = moved[c] - r[c] * moved[2];
-        }
+        for (const Entry& entry : entries_)
+            if (entry.row == c || entry.row == 2)
+                A.at<double>(i, entry.step) += entry.value * p[entry.column] * (entry.row == 2 ? -r[c] : 1);
     }
     if (!solve(A, b, s, DECOMP_LU))
         return;
@@ -179,8 +154,8 @@ void PlanarProblem::linearize(const Matx33d& transform, double limit, std::vecto
 Matx33d PlanarProblem::moved(const Matx33d& transform, const Step& step) const
 {
     Matx33d result = transform;
-    for (int k = 0; k < parameters(); k++)
-        result += basis_[k] * step[k];
+    for (const Entry& entry : entries_)
+        result(entry.row, entry.column) += entry.value * step[entry.step];
     return result;
 }
 

@@ -13,12 +13,12 @@ public:
     typedef Matx33d Model;
     typedef Vec<double, 8> Step;
 
-    //! Both N x 2, CV_64F, pixels; kind of AlignmentModel.
-    PlanarProblem(const Mat& reference, const Mat& image, int kind);
+    //! Points in pixels; kind of AlignmentModel.
+    PlanarProblem(const Points& reference, const Points& image, int kind);
 
     int size() const { return (int)image_.size(); }
     int sampleSize() const { return parameters() / 2; }
-    int parameters() const { return (int)basis_.size(); }
+    int parameters() const { return entries_.back().step + 1; }
 
     void propose(const std::vector<int>& sample, std::vector<Matx33d>& transforms) const;
     double loss(const Matx33d& transform, const Loss& by, double limit) const;
@@ -48,15 +48,14 @@ private:
         Vec2d at;
         Matx<double, 2, 8> byStep;
     };
-    struct Entry  // a nonzero entry of a basis matrix
+    struct Entry  // the step adds its parameter, times the value, to an entry of the matrix
     {
         int step, row, column;
         double value;
     };
     Place placeOf(const Matx33d& transform, const Vec3d& point) const;
 
-    std::vector<Matx33d> basis_;            // a step adds multiples of these matrices
-    std::vector<Entry> entries_;            // of all basis matrices
+    std::vector<Entry> entries_;            // in the order of the parameters
     std::vector<Vec3d> reference_, image_;  // normalized: centred, of the order of one, third coordinate 1
     Matx33d fromReference_, fromImage_;     // pixels to normalized coordinates
     double unit_;                           // pixels per normalized unit

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pose_fit.hpp"
 
-#include "../verdict/pose_verdict.hpp"
+#include "../verdict/pose_tests.hpp"
 
 namespace cv::iib {
 namespace {
@@ -9,11 +9,10 @@ namespace {
 typedef std::vector<double> Errors;
 
 const int THRESHOLDS = 7;
-const double FIRST_THRESHOLD = 1.4;          // scales
-const double RANGE = 12;                     // ratio of the last threshold to the first
-const double FARTHEST_AGREEING = 12;         // scales: largest error of a match to sample from
-const double UNSURE = 4;                     // factor by which an estimated scale may be wrong
-const double FINELY = 1e-9, ROUGHLY = 1e-3;  // polish's `enough`
+const double FIRST_THRESHOLD = 1.4;   // scales
+const double RANGE = 12;              // ratio of the last threshold to the first
+const double FARTHEST_AGREEING = 12;  // scales: largest error of a match to sample from
+const double UNSURE = 4;              // factor by which an estimated scale may be wrong
 const int FEWEST = 100, FEW_TRIALS = 1000, MANY_TRIALS = 500, MOST_TRIALS = 12000;
 const int ROUNDS = 3;               // of sampling from the best pose's inliers, at most
 const double BETTER = .99;          // another round follows if the best sum falls below this share of it
@@ -58,8 +57,7 @@ struct Candidate
 Candidate candidateOf(
         const EpipolarProblem& problem, const RelativePose& pose, double first, const Errors& weights)
 {
-    Candidate candidate;
-    candidate.pose = pose;
+    Candidate candidate = {pose, {}, 0};
     problem.squaredErrors(pose, candidate.squared);
     candidate.sum = misfit(candidate.squared, first, weights);
     return candidate;
@@ -161,10 +159,7 @@ PoseFit searchPose(
             isWide = false;
         }
     }
-    const auto agreeing = [](const PoseFit& fit) {
-        const Verdict::Marks near = within(fit.limit, fit.squared);
-        return std::count(near.begin(), near.end(), true);
-    };
+    const auto agreeing = [](const PoseFit& fit) { return countOf(within(fit.limit, fit.squared)); };
     if (scale == 0 && problem.size() < FEW)
     {
         // With few matches, a pose may fit some so closely that the others seem wrong. A wider scale avoids this.
@@ -216,18 +211,15 @@ void polishByAgreeing(const EpipolarProblem& problem, double scale, PoseFit& fit
     fit.errorScale = fit.limit < 6 * fit.scale ? fit.scale : fit.limit / 3;
     if (scale > 0)
         fit.errorScale = std::max(fit.errorScale, widerScale(problem, fit.squared, fit.scale));
-    Errors parallaxes;
-    for (int i = 0; i < problem.size(); i++)
-        parallaxes.push_back(problem.parallax(fit.model, i, i));
-    fit.used = withinByMoreThanChance(fit.squared, parallaxes, 3 * fit.errorScale);
-    if (std::count(fit.used.begin(), fit.used.end(), true) < FEW)
+    fit.used = withinByMoreThanChance(fit.squared, problem.parallaxes(fit.model), 3 * fit.errorScale);
+    if (countOf(fit.used) < FEW)
     {
         fit.used.assign(problem.size(), true);
         if (scale == 0)  // the scale estimated from few matches is too narrow
             fit.scale = fit.errorScale = std::max(fit.errorScale, fit.limit / 3);
     }
     polish(problem.subset(fit.used), Loss{fit.scale}, FINELY, fit.model);
-    finish(problem, fit);
+    problem.squaredErrors(fit.model, fit.squared);
 }
 
 }  // namespace
@@ -240,7 +232,7 @@ PoseFit fitPose(const EpipolarProblem& problem, const Verdict& verdict, double s
     if (scale == 0)
         best.scale = widerScale(problem, best.squared, best.scale);
     polish(problem, Loss{best.scale}, ROUGHLY, best.model);
-    finish(problem, best);
+    problem.squaredErrors(best.model, best.squared);
     addOthers(problem, best);
     const double first = firstThreshold(problem, scale > 0, best.scale);
     double least = misfit(best.squared, first, weights);
@@ -253,7 +245,7 @@ PoseFit fitPose(const EpipolarProblem& problem, const Verdict& verdict, double s
         other = best.model;
         best.model = candidate.pose;
     }
-    finish(problem, best);
+    problem.squaredErrors(best.model, best.squared);
     polishByAgreeing(problem, scale, best);
     return best;
 }

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "real_roots.hpp"
+#include "five_points.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include "opencv2/core.hpp"
 
 namespace cv::iib {
 namespace {

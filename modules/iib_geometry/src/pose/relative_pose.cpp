@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opencv2/iib/relative_pose.hpp"
 
+#include <tuple>
+
 #include "pose_fit.hpp"
-#include "../common/points.hpp"
 #include "uncertainty.hpp"
-#include "../verdict/pose_verdict.hpp"
+#include "../verdict/pose_tests.hpp"
 
 namespace cv::iib {
 namespace {
@@ -17,30 +18,22 @@ const double ONE_DIRECTION = 1;   // radians: if two possible t differ by more, 
 Matx33d cameraMatrix(InputArray matrix, const char* name)
 {
     const Mat given = matrix.getMat();
-    bool good = given.dims == 2 && given.rows == 3 && given.cols == 3 && given.channels() == 1 &&
-                (given.depth() == CV_32F || given.depth() == CV_64F);
     Matx33d K;
-    if (good)
-    {
-        Mat doubles;
-        given.convertTo(doubles, CV_64F);
-        K = Matx33d(doubles);
-        good = checkRange(doubles) && K(0, 0) > 0 && K(1, 1) > 0 && K(0, 1) == 0 && K(1, 0) == 0 &&
-               K(2, 0) == 0 && K(2, 1) == 0 && K(2, 2) == 1;
-    }
-    if (!good)
-        CV_Error(Error::StsBadArg, format("findRelativePose: %s must be 3 x 3, CV_32F or CV_64F, [fx 0 cx; 0 "
-                                          "fy cy; 0 0 1] in pixels, with "
-                                          "fx and fy over 0",
-                                           name));
+    if (given.size() == Size(3, 3) && (given.type() == CV_32F || given.type() == CV_64F))
+        given.convertTo(K, CV_64F);
+    if (!checkRange(K) || !(K(0, 0) > 0 && K(1, 1) > 0) ||
+            K != Matx33d(K(0, 0), 0, K(0, 2), 0, K(1, 1), K(1, 2), 0, 0, 1))
+        CV_Error(Error::StsBadArg,
+                format("findRelativePose: %s must be 3 x 3, CV_32F or CV_64F, [fx 0 cx; 0 fy cy; 0 0 1] in "
+                       "pixels, with fx and fy over 0",
+                        name));
     return K;
 }
 
-//! Both N x 2, CV_64F, continuous.
-bool isLess(const Mat& points, const Mat& others)
+bool isLess(const Points& points, const Points& others)
 {
-    const double *const a = (const double*)points.data, *const b = (const double*)others.data;
-    return std::lexicographical_compare(a, a + points.total(), b, b + others.total());
+    return std::lexicographical_compare(points.begin(), points.end(), others.begin(), others.end(),
+            [](const Point2d& a, const Point2d& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
 }
 
 /** Weights of the matches for the choice among poses: less accurate matches count less.
@@ -59,9 +52,8 @@ std::vector<double> weightsOf(InputArray covariances, int count)
     rows.convertTo(rows, CV_64F);
     for (int i = 0; i < count; i++)
     {
-        const double variance =
-                rows.at<double>(i, 0) + rows.at<double>(i, 2);  // NaN and infinite ones get no weight
-        weights.push_back(variance >= 0 ? 1 / std::sqrt(1 + variance) : 0);
+        const double variance = rows.at<double>(i, 0) + rows.at<double>(i, 2);
+        weights.push_back(variance >= 0 ? 1 / std::sqrt(1 + variance) : 0);  // no weight for NaN and infinity
     }
     return weights;
 }
@@ -70,14 +62,13 @@ std::vector<double> weightsOf(InputArray covariances, int count)
 struct PoseErrors
 {
     Square<EpipolarProblem::Step> covariance;
-    EpipolarProblem::Step rival;  //!< step to another pose that explains the matches as well
-    bool hasRival = false;
+    EpipolarProblem::Step rival;  //!< step to another pose that explains the matches as well; 0 without one
 };
 
 /** Estimates the covariance of a pose from its matches, then enlarges it if the direction of t is not significant, or if other poses
 explain the matches as well. */
 PoseErrors estimateErrors(
-        const EpipolarProblem& problem, const PoseFit& fit, const Mat& points, const Verdict& verdict)
+        const EpipolarProblem& problem, const PoseFit& fit, const Points& points, const Verdict& verdict)
 {
     const double level = 5;                     // standard deviations: a pose within them is no rival
     const double ofPlane = .05, ofOthers = .1;  // radians: a pose rotated by less enlarges the error only
@@ -102,11 +93,8 @@ PoseErrors estimateErrors(
                                                                        problem.parameters(), LEAST_NOISE));
     const bool hasDirection = isDirectionCertain(
             fit.squared, problem.leastParallaxes(fit.model, fit.squared, limit), limit, verdict, -1);
-    // This test is milder: it does not minimize the parallaxes by a rotation first.
-    std::vector<double> parallaxes;
-    for (int i = 0; i < problem.size(); i++)
-        parallaxes.push_back(problem.parallax(fit.model, i, i));
-    const bool hasParallax = isDirectionCertain(fit.squared, parallaxes, limit, verdict);
+    // A milder test: no rotation minimizes the parallaxes first.
+    const bool hasParallax = isDirectionCertain(fit.squared, problem.parallaxes(fit.model), limit, verdict);
     if (!hasDirection)
         errors.covariance += anyDirection;
     const Square<EpipolarProblem::Step> expected = errors.covariance.inv(DECOMP_SVD);
@@ -121,10 +109,7 @@ PoseErrors estimateErrors(
         const double turned = norm(Vec3d(step.val));
         if (hasParallax && turned >= (k < fit.planar ? ofPlane : ofOthers) &&
                 turned > norm(Vec3d(errors.rival.val)))
-        {
-            errors.hasRival = true;
             errors.rival = step;
-        }
         if (step.dot(errors.covariance.inv(DECOMP_SVD) * step) > 1)  // then it is one standard deviation away
             errors.covariance += step * step.t();
         if (norm(Vec2d(step.val + 3)) > ONE_DIRECTION)
@@ -160,7 +145,7 @@ std::string reasonAgainst(
     if (verdict.isOfSmallParts(within(fit.limit, fit.squared), problem.sampleSize(), fit.chance))
         return "the matches that agree are in small parts of the image, and the others do not agree: a "
                "logo, a caption?";
-    if (errors.hasRival)
+    if (errors.rival != EpipolarProblem::Step())
         return format("two poses explain the matches as well, turned by %.0f and moved in directions by "
                       "%.0f degrees against each other: the points may lie on a plane",
                 norm(Vec3d(errors.rival.val)) * 180 / CV_PI, norm(Vec2d(errors.rival.val + 3)) * 180 / CV_PI);
@@ -173,8 +158,8 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
         InputArray cameraMatrix2, OutputArray R, OutputArray t, OutputArray inliers, double scale,
         OutputArray covariance, String* reason, InputArray covariances)
 {
-    Mat first = pointsOf(points1, "findRelativePose", "points1"),
-        second = pointsOf(points2, "findRelativePose", "points2");
+    Points first = pointsOf(points1, "findRelativePose", "points1"),
+           second = pointsOf(points2, "findRelativePose", "points2");
     checkMatched(first, second, "findRelativePose");
     if (!(scale >= 0) || cvIsInf(scale))
         CV_Error(Error::StsOutOfRange,
@@ -191,14 +176,14 @@ bool findRelativePose(InputArray points1, InputArray points2, InputArray cameraM
     const EpipolarProblem problem(first, second, camera1, camera2);
     const Verdict verdict(first, second);
     PoseFit fit = fitPose(problem, verdict, scale > 0 ? std::clamp(scale, LEAST_SCALE, MOST_SCALE) : 0,
-            weightsOf(covariances, first.rows));
+            weightsOf(covariances, problem.size()));
     PoseErrors errors;
     if (fit.logFalseAlarms < Verdict::CERTAIN)
         errors = estimateErrors(problem, fit, first, verdict);
     const std::string why = reasonAgainst(problem, fit, errors, verdict);
     if (inliers.needed())
     {
-        Mat agree(first.rows, 1, CV_8U, Scalar(0));
+        Mat agree(problem.size(), 1, CV_8U, Scalar(0));
         const Verdict::Marks near = within(3 * std::max(fit.scale, REFINED), fit.squared);
         std::copy(near.begin(), near.end(), agree.begin<uchar>());
         agree.copyTo(inliers);

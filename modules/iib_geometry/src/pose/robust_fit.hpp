@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 #include "../common/parallel.hpp"
-#include "opencv2/core.hpp"
+#include "../common/points.hpp"
 
 namespace cv::iib {
 
@@ -26,6 +24,7 @@ const double REFINED = .25;           // pixels: least scale of the inlier thres
 const double MISSED = 1e-4;           // accepted probability that every sample has a wrong match
 const double FARTHEST = 9;            // squared scales
 const double FARTHEST_OF_CHOICE = 4;  // scales at which squared errors are cut off when a model is chosen
+const double FINELY = 1e-9, ROUGHLY = 1e-3;  // polish's `enough`
 
 /** The loss of a squared error r^2: Cauchy's log(1 + r^2 / scale^2), constant from `farthest` scale^2 on. How far a wrong match is
 off carries no information. */
@@ -45,8 +44,6 @@ template <class Step> struct Row
 };
 
 template <class Step> using Square = Matx<double, Step::channels, Step::channels>;
-
-inline double square(double x) { return x * x; }
 
 //! Adds weight J J' to the lower triangle of a sum.
 template <class Step> void addProduct(const Step& J, double weight, Square<Step>& sum)
@@ -120,13 +117,10 @@ template <class Problem> struct Fit
     double scale = 0;             //!< of the loss that the model was polished under, pixels
     std::vector<double> squared;  //!< errors of the matches, pixels^2; empty if there is no model
     int samples = 0;              //!< number of samples that were tried
-    double inlierRatio = 0;       //!< share of the matches within three scales
 };
 
-/** Searches for models that many matches agree with. Deterministic.
-
-Samples propose models, and the models of least loss are kept. At the end each of these is polished under a wider loss: at a narrow
-scale, a cluster of wrong matches may attract the best model. */
+/** Searches for models that many matches agree with. Deterministic. Samples propose models, and the models of least loss are kept. At the
+end each of them is polished under a wider loss: under a narrow one, a few wrong matches that agree may attract a model. */
 template <class Problem> class Search
 {
 public:
@@ -165,7 +159,6 @@ public:
     bool wantsMore() const { return samples_ < wanted_; }  //!< whether more samples might find a better model
 
 private:
-    static constexpr double ROUGHLY = 1e-3;  // polish's `enough`
     static constexpr size_t MOST = 10;  // models kept: the one of least loss need not lead to the best result
     struct Proposal
     {
@@ -179,11 +172,11 @@ private:
         return best_.size() < MOST ? std::numeric_limits<double>::max() : best_.back().first;
     }
 
-    //! Threads propose models in parallel. Models are kept in the order of their samples, so threads do not change the result.
+    //! Tries a batch of samples in parallel, and keeps their models in the samples' order: threads do not change the result.
     void trySamples(int mostTrials)
     {
         const double batch = getNumThreads() > 1 ? 25 : 1;  // divides `fewest`, 100 or 150
-        const size_t expected = 2;  // models to polish; the better one gives the wanted number of samples
+        const size_t expected = 2;  // best models that may be right; each gives a wanted number of samples
         proposals_.resize(cvCeil(std::min({batch, (double)mostTrials - samples_, wanted_ - samples_})));
         for (size_t i = 0; i < proposals_.size(); i++)
         {
@@ -264,16 +257,6 @@ private:
     int samples_ = 0;
 };
 
-//! Fills in the errors of a fit's model and its inlier ratio.
-template <class Problem> void finish(const Problem& problem, Fit<Problem>& fit)
-{
-    problem.squaredErrors(fit.model, fit.squared);
-    const double near = FARTHEST * square(fit.scale);
-    const auto count =
-            std::count_if(fit.squared.begin(), fit.squared.end(), [&](double e) { return e < near; });
-    fit.inlierRatio = (double)count / std::max(problem.size(), 1);
-}
-
 /** The scale, in pixels, of the errors below a distance, from their median (Rousseeuw and Leroy 1987).
 @param parameters of the model, which reduce the degrees of freedom.
 @param least lower bound of the result. */
@@ -287,9 +270,7 @@ inline double scaleWithin(
     const double free = (double)near.size() - parameters;
     if (free <= 0)
         return std::max(distance / 3, least);
-    const auto middle = near.begin() + near.size() / 2;
-    std::nth_element(near.begin(), middle, near.end());
-    return std::max(1.4826 * std::sqrt(*middle * near.size() / free), least);
+    return std::max(1.4826 * std::sqrt(median(near) * near.size() / free), least);
 }
 
 /** The same, and whether the errors below the distance look like those of right matches: most are far below it, and few are just
@@ -313,7 +294,6 @@ inline bool findScale(const std::vector<double>& squared, double distance, int p
 most errors are not far below it. */
 template <class Problem> Fit<Problem> robustFit(const Problem& problem)
 {
-    const double finely = 1e-9;
     const int fewest = 150, fewTrials = 1000, mostTrials = 10000;
     Fit<Problem> fit;
     // Takes the best model of a search; returns whether its errors show a scale.
@@ -349,8 +329,8 @@ template <class Problem> Fit<Problem> robustFit(const Problem& problem)
     }
     if (fit.squared.empty())
         return fit;
-    polish(problem, Loss{fit.scale}, finely, fit.model);
-    finish(problem, fit);
+    polish(problem, Loss{fit.scale}, FINELY, fit.model);
+    problem.squaredErrors(fit.model, fit.squared);
     return fit;
 }
 

@@ -18,7 +18,7 @@ Matx33d orthonormal(const Matx33d& m)
     return Matx33d(x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2]);
 }
 
-//! Rodrigues' formula.
+//! Rodrigues' formula. Affine3d's has other last digits, which decide between the two poses of a plane.
 Matx33d rotationBy(const Vec3d& w)
 {
     const double angle = norm(w);
@@ -45,7 +45,7 @@ Matx<double, 3, 2> tangentsOf(const Vec3d& t)
 RelativePose moved(const RelativePose& pose, const Vec<double, 5>& step)
 {
     const Vec3d along = tangentsOf(pose.t) * Vec2d(step[3], step[4]);
-    return {orthonormal(rotationBy(Vec3d(step[0], step[1], step[2])) * pose.R), normalize(pose.t + along)};
+    return {orthonormal(rotationBy(Vec3d(step.val)) * pose.R), normalize(pose.t + along)};
 }
 
 Vec<double, 5> stepBetween(const RelativePose& pose, const RelativePose& other)
@@ -58,24 +58,16 @@ Vec<double, 5> stepBetween(const RelativePose& pose, const RelativePose& other)
     return Vec<double, 5>(turn[0], turn[1], turn[2], along[0], along[1]);
 }
 
-// The inverse of exp(w) R, t + B a, with B the tangents: R' exp(-w) = exp(-R' w) R', -R' exp(-w) (t + B a) = -R't - R'(B a + t x w) + ...
+// A step turns R to exp(w) R and t to t + B a, with the tangents B. The inverse pose, R' and -R't, then has the rotation
+// R' exp(-w) = exp(-R'w) R', and to first order the translation -R't - R'(B a + t x w).
 Matx<double, 5, 5> stepOfInverse(const RelativePose& pose)
 {
     const Matx33d back = pose.R.t() * -1.;
     const Matx<double, 2, 3> along = tangentsOf(inverse(pose).t).t() * back;
-    const Matx<double, 2, 3> byTurn = along * crossProduct(pose.t);
-    const Matx22d byTangents = along * tangentsOf(pose.t);
-    Matx<double, 5, 5> all = Matx<double, 5, 5>::zeros();
-    for (int c = 0; c < 3; c++)
-    {
-        for (int r = 0; r < 3; r++)
-            all(r, c) = back(r, c);
-        for (int r = 0; r < 2; r++)
-            all(3 + r, c) = byTurn(r, c);
-    }
-    for (int r = 0; r < 2; r++)
-        for (int c = 0; c < 2; c++)
-            all(3 + r, 3 + c) = byTangents(r, c);
+    Matx<double, 5, 5> all;
+    setBlock(all, 0, 0, back);
+    setBlock(all, 3, 0, along * crossProduct(pose.t));
+    setBlock(all, 3, 3, along * tangentsOf(pose.t));
     return all;
 }
 

@@ -17,6 +17,15 @@ inline Matx33d crossProduct(const Vec3d& t)
     return Matx33d(0, -t[2], t[1], t[2], 0, -t[0], -t[1], t[0], 0);
 }
 
+//! Writes a block of a matrix, whose first entry is at this row and column.
+template <int M, int N, int H, int W>
+void setBlock(Matx<double, M, N>& matrix, int row, int column, const Matx<double, H, W>& block)
+{
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            matrix(row + y, column + x) = block(y, x);
+}
+
 inline Matx33d essentialOf(const RelativePose& pose) { return crossProduct(pose.t) * pose.R; }
 
 //! Two unit vectors that form a right-handed system with t: b and t x b in findRelativePose's documentation.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "../common/points.hpp"
 #include "robust_fit.hpp"
 
 namespace cv::iib {
@@ -21,42 +20,28 @@ const double SHARED = .2;            // of the variance of a match
 const double LEAST_NOISE = .02;      // pixels: least standard deviation of a match
 const double LARGEST_DEVIATION = 3;  // radians: standard deviation of an undetermined angle
 
-//! The index of each point's part of the image. Points are N x 2, CV_64F; the parts divide their span.
-inline std::vector<int> partsOf(const Mat& points)
+//! The index of each point's part of the image. The parts divide the points' span.
+inline std::vector<int> partsOf(const Points& points)
 {
     const Rect2d span = spanOf(points);
     const auto part = [](double place, int parts) { return (int)std::clamp(place * parts, 0., parts - 1.); };
-    std::vector<int> parts(points.rows);
-    for (int i = 0; i < points.rows; i++)
-    {
-        const double* p = points.ptr<double>(i);
-        parts[i] = part((p[0] - span.x) / span.width, PARTS_ACROSS) +
-                   part((p[1] - span.y) / span.height, PARTS_DOWN) * PARTS_ACROSS;
-    }
+    std::vector<int> parts;
+    for (const Point2d& p : points)
+        parts.push_back(part((p.x - span.x) / span.width, PARTS_ACROSS) +
+                        part((p.y - span.y) / span.height, PARTS_DOWN) * PARTS_ACROSS);
     return parts;
 }
 
-/** The inverse of a symmetric matrix, after raising its eigenvalues to at least `least`.
-@param unknown if not null: receives the sum of v v' over the eigenvectors v of raised eigenvalues, weighted by how much each was
-    raised (0 to 1). */
-template <int N>
-Matx<double, N, N> inverseWithFloor(
-        const Matx<double, N, N>& m, double least, Matx<double, N, N>* unknown = nullptr)
+//! Sum of v f(v, value)' over the eigenvectors v of a symmetric matrix and their eigenvalues; f is of each entry of v.
+template <int N, class Function>
+Matx<double, N, N> ofEigenvalues(const Matx<double, N, N>& m, const Function& function)
 {
     Matx<double, N, 1> values;
-    Matx<double, N, N> vectors, scaled, raised;
+    Matx<double, N, N> vectors, scaled;
     eigen(m, values, vectors);
     for (int r = 0; r < N; r++)
-    {
-        const double share = std::clamp(1 - values(r) / least, 0., 1.);
         for (int c = 0; c < N; c++)
-        {
-            scaled(r, c) = vectors(r, c) / std::max(values(r), least);
-            raised(r, c) = vectors(r, c) * share;
-        }
-    }
-    if (unknown)
-        *unknown = vectors.t() * raised;
+            scaled(r, c) = function(vectors(r, c), values(r));
     return vectors.t() * scaled;
 }
 
@@ -65,13 +50,9 @@ Matx<double, N, N> inverseWithFloor(
 template <int N>
 Matx<double, N, N> limited(const Matx<double, N, N>& covariance, double largest, double rank = 0)
 {
-    Matx<double, N, 1> values;
-    Matx<double, N, N> vectors, scaled;
-    eigen(covariance, values, vectors);
-    for (int r = 0; r < N; r++)
-        for (int c = 0; c < N; c++)
-            scaled(r, c) = vectors(r, c) * std::clamp(values(r), rank * square(largest), square(largest));
-    return vectors.t() * scaled;
+    return ofEigenvalues(covariance, [&](double entry, double value) {
+        return entry * std::clamp(value, rank * square(largest), square(largest));
+    });
 }
 
 /** Covariance of the step from a fitted model to the true one.
@@ -101,7 +82,7 @@ Square<typename Problem::Step> covarianceOf(const Problem& problem, const Fit<Pr
     }
     const double count = (double)rows.size(), freedom = std::max(count - problem.parameters(), 1.);
     const double bend = std::max(slope / weights, leastBend), meanSlope = bend * weights / count;
-    // The ratio of F's to chi-squared's quantiles, so that 95 % intervals also hold for noise estimated from few matches.
+    // Noise estimated from few matches may be too small: F's quantiles over those of chi-squared.
     const double few = (std::max(freedom, 3.) + 2) / (std::max(freedom, 3.) - 2);
     const double noise2 = std::max(influence2 / freedom / square(meanSlope) * few, square(LEAST_NOISE));
 
@@ -132,15 +113,20 @@ Square<typename Problem::Step> covarianceOf(const Problem& problem, const Fit<Pr
     }
     mirror(ofGradient);
     const double least = noise2 / square(largest);
-    Square<Step> unknown;
-    const Square<Step> inverse = inverseWithFloor(hessian, least, &unknown);
+    const auto inverseOf = [&](const Square<Step>& m) {
+        return ofEigenvalues(m, [&](double entry, double value) { return entry / std::max(value, least); });
+    };
+    const Square<Step> inverse = inverseOf(hessian), unknown = ofEigenvalues(hessian, [&](double entry,
+                                                                                              double value) {
+        return entry * std::clamp(1 - value / least, 0., 1.);  // how much inverseOf() raised the eigenvalue
+    });
 
     std::vector<Step> changes;
     Step mean;
     for (const Part& part : all)
         if (part.hessian != Square<Step>::zeros())
         {
-            changes.push_back(inverseWithFloor(hessian - part.hessian, least) * part.gradient);
+            changes.push_back(inverseOf(hessian - part.hessian) * part.gradient);
             mean += changes.back();
         }
     const double groups = (double)changes.size();

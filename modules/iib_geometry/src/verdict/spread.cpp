@@ -4,7 +4,6 @@
 #include <map>
 #include <set>
 
-#include "../precomp.hpp"
 #include "opencv2/imgproc.hpp"
 
 namespace cv::iib {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "support.hpp"
 
-#include <algorithm>
 #include <set>
 
 namespace cv::iib {
@@ -16,8 +15,6 @@ const size_t FEW_REGIONS = 6;
 const double ROUGH = .5;      // tolerance of matches far apart, between which depth and perspective change
 const double LEAST_FAR = .3;  // of pairs of matches far apart that agree
 const double EXACT = .25;     // tolerance around an estimated map
-
-typedef std::vector<Point2d> Points;
 
 //! An evenly spaced sample.
 Points someOf(const Points& points, size_t most)
@@ -51,15 +48,6 @@ Neighbours neighboursOf(const Points& points)
             neighbours.emplace_back(i, distances[k].second);
     }
     return neighbours;
-}
-
-double medianOf(std::vector<double>& values)
-{
-    if (values.empty())
-        return 0;
-    const auto middle = values.begin() + values.size() / 2;
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 //! Whether displacements lie along one line.
@@ -122,8 +110,8 @@ Support supportOf(const Points& points1, const Points& points2, const Neighbours
         shifts[0].push_back(shift[0]);
         shifts[1].push_back(shift[1]);
     }
-    support.map = Matx33d(found(0, 0), found(0, 1), medianOf(shifts[0]), found(1, 0), found(1, 1),
-            medianOf(shifts[1]), 0, 0, 1);
+    support.map = Matx33d(found(0, 0), found(0, 1), median(shifts[0]), found(1, 0), found(1, 1),
+            median(shifts[1]), 0, 0, 1);
     return support;
 }
 

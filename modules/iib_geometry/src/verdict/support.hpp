@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <vector>
-
-#include "opencv2/core.hpp"
+#include "../common/points.hpp"
 
 namespace cv::iib {
 
@@ -19,11 +16,10 @@ struct Support
     /** For matches of which few may be right.
     @param map an estimate, of which only the linear part is used.
     @param tolerance of a neighbour's displacement, relative to the displacement by the map. */
-    static Support around(const std::vector<Point2d>& points1, const std::vector<Point2d>& points2,
-            const Matx33d& map, double tolerance);
+    static Support around(const Points& points1, const Points& points2, const Matx33d& map, double tolerance);
 
     //! For matches most of which are right, without an estimate of the map.
-    static Support of(const std::vector<Point2d>& points1, const std::vector<Point2d>& points2);
+    static Support of(const Points& points1, const Points& points2);
 
     double share() const { return (double)count / std::max(compared, 1); }
 };
@@ -31,12 +27,11 @@ struct Support
 /** Whether matches far from each other agree with the map of their neighbours. They do not where only small parts agree, such as windows that look
 the same upside down.
 @param map from points1 to points2, pixels, estimated from neighbours. */
-bool agreeFarApart(
-        const std::vector<Point2d>& points1, const std::vector<Point2d>& points2, const Matx33d& map);
+bool agreeFarApart(const Points& points1, const Points& points2, const Matx33d& map);
 
 /** Whether matches that a search found are of one structure alone, such as a round spot that looks like others in some view: they lie in few
 regions of a descriptor's size.
 @param points of the matches in a view, pixels. */
-bool areOneStructure(const std::vector<Point2d>& points);
+bool areOneStructure(const Points& points);
 
 }  // namespace cv::iib

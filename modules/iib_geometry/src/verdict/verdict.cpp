@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "verdict.hpp"
 
-#include <algorithm>
 #include <bitset>
 #include <cmath>
 #include <limits>
@@ -11,12 +10,9 @@
 #include "../precomp.hpp"
 #include "opencv2/iib/verdict.hpp"
 #include "opencv2/imgproc.hpp"
-#include "../common/points.hpp"
 
 namespace cv::iib {
 namespace {
-
-double square(double x) { return x * x; }
 
 const int CELLS = 32;           // of the diagonal of what the points span
 const double CERTAINLY = 1e-3;  // chance
@@ -50,16 +46,16 @@ double chanceOfSoMany(int n, int k, double each)
 
 /** The fundamental matrix or homography of the marked matches.
 @return empty if they are too few or lie on one line. */
-Mat modelOf(const Mat& points1, const Mat& points2, const Verdict::Marks& marks, bool epipolar)
+Mat modelOf(const Points& points1, const Points& points2, const Verdict::Marks& marks, bool epipolar)
 {
-    Mat chosen[2];
-    for (int i = 0; i < points1.rows; i++)
+    Points chosen[2];
+    for (size_t i = 0; i < marks.size(); i++)
         if (marks[i])
         {
-            chosen[0].push_back(points1.row(i));
-            chosen[1].push_back(points2.row(i));
+            chosen[0].push_back(points1[i]);
+            chosen[1].push_back(points2[i]);
         }
-    if (chosen[0].rows < (epipolar ? 8 : 4))
+    if (chosen[0].size() < (epipolar ? 8 : 4))
         return Mat();
     const Mat found = epipolar ? findFundamentalMat(chosen[0], chosen[1], FM_8POINT)
                                : findHomography(chosen[0], chosen[1], 0);
@@ -81,38 +77,35 @@ Cells cellsOf(const Verdict::Marks& matches, const std::vector<int>& cellOf)
 
 }  // namespace
 
-Verdict::Verdict(const Mat& points1, const Mat& points2)
+Verdict::Verdict(const Points& points1, const Points& points2)
 {
-    const bool oneImage = points1.data == points2.data;
-    for (int i = 0; i < points1.rows; i++)
-        shifts_.push_back(points2.at<Point2d>(i) - points1.at<Point2d>(i));
-    firsts_.resize(points1.rows);
+    const Points* const all[] = {&points1, &points2};
+    const int count = (int)points1.size();
+    for (int i = 0; i < count; i++)
+        shifts_.push_back(points2[i] - points1[i]);
+    firsts_.resize(count);
     std::iota(firsts_.begin(), firsts_.end(), 0);
     for (int round = 0; round < 2; round++)  // the second time, the span is that of places, not of matches
     {
-        const Mat* const all[] = {&points1, &points2};
         for (int image = 0; image < 2; image++)
         {
-            Mat ofPlaces;
+            Points ofPlaces;
             for (int i : firsts_)
-                ofPlaces.push_back(all[image]->row(i));
+                ofPlaces.push_back((*all[image])[i]);
             const Rect2d span = spanOf(ofPlaces);
             const double cell = cell_ = diagonal(span.size()) / CELLS;
+            const auto within = [&](double place) {
+                return (int)std::clamp(place / cell, 0., (double)CELLS);
+            };
             cells_[image].clear();
-            for (int i = 0; i < points1.rows; i++)
-            {
-                const double* p = all[image]->ptr<double>(i);
-                const auto within = [&](double place) {
-                    return (int)std::clamp(place / cell, 0., (double)CELLS);
-                };
-                cells_[image].push_back(within(p[1] - span.y) * (CELLS + 1) + within(p[0] - span.x));
-            }
+            for (const Point2d& p : *all[image])
+                cells_[image].push_back(within(p.y - span.y) * (CELLS + 1) + within(p.x - span.x));
             spans_[image] = span.size();
         }
         std::set<std::pair<int, int>> known;
         firsts_.clear();
-        for (int i = 0; i < points1.rows; i++)
-            if (oneImage || known.insert({cells_[0][i], cells_[1][i]}).second)
+        for (int i = 0; i < count; i++)
+            if (all[0] == all[1] || known.insert({cells_[0][i], cells_[1][i]}).second)
                 firsts_.push_back(i);
     }
 }
@@ -188,8 +181,7 @@ double Verdict::logFalseAlarms(const Marks& all, const Marks& agreeing, int samp
                                         logBinomial(k, sampleSize) + (k - sampleSize) * std::log10(each)
                               : std::numeric_limits<double>::infinity();
     };
-    const auto count = [](const Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); };
-    double most = of(count(all), count(agreeing), chance);
+    double most = of(countOf(all), countOf(agreeing), chance);
     for (int image = 0; image < 2; image++)
         most = std::max(
                 most, of(places(all, image), places(agreeing, image), chanceOfPlaces(all, chance, image)));
@@ -223,12 +215,15 @@ bool Verdict::isOfSmallParts(const Marks& agreeing, int sampleSize, double chanc
     const double mostShifted = .6;
     const double share[] = {.5, .8, .8, .8};          // of the matches that agree, in the first 1 to 4 parts
     const Size sizes[] = {{5, 5}, {12, 3}, {3, 12}};  // of a part, cells: a twentieth of the image
-    const auto count = std::count_if(firsts_.begin(), firsts_.end(), [&](int i) { return agreeing[i]; });
     for (const std::vector<int>& cells : cells_)
     {
-        Mat counts(side, side, CV_64F, Scalar(0)), outside(side, side, CV_8U, Scalar(1)), sums;
+        Mat all(side, side, CV_64F, Scalar(0)), counts = all.clone(), sums;
         for (int i : firsts_)
+        {
+            all.at<double>(cells[i] / side, cells[i] % side)++;
             counts.at<double>(cells[i] / side, cells[i] % side) += agreeing[i];
+        }
+        const double count = sum(counts)[0];
         double inside = 0, shifted = 0;
         for (int part = 0; part < mostParts; part++)
         {
@@ -236,32 +231,26 @@ bool Verdict::isOfSmallParts(const Marks& agreeing, int sampleSize, double chanc
             Rect best;
             for (const Size& size : sizes)
             {
-                double sum;
+                double here;
                 Point at;
                 boxFilter(counts, sums, CV_64F, size, Point(0, 0), false, BORDER_CONSTANT);
-                minMaxLoc(sums(Rect(0, 0, side - size.width + 1, side - size.height + 1)), nullptr, &sum,
+                minMaxLoc(sums(Rect(0, 0, side - size.width + 1, side - size.height + 1)), nullptr, &here,
                         nullptr, &at);
-                if (sum > most)
+                if (here > most)
                 {
-                    most = sum;
+                    most = here;
                     best = Rect(at, size);
                 }
             }
+            all(best) = 0;
             counts(best) = 0;
             const auto isInside = [&](int i) { return best.contains({cells[i] % side, cells[i] / side}); };
             shifted += countOfOneShift(agreeing, isInside);
-            outside(best) = 0;
             inside += most;
             const bool isShifted = shifted > mostShifted * inside;
-            if (inside <= share[part] * (double)count || (part > 0 && !isShifted))
+            if (inside <= share[part] * count || (part > 0 && !isShifted))
                 continue;
-            int others = 0, beside = 0;
-            for (int i : firsts_)
-                if (outside.at<uchar>(cells[i] / side, cells[i] % side))
-                {
-                    others++;
-                    beside += agreeing[i];
-                }
+            const int others = (int)sum(all)[0], beside = (int)(count - inside);
             // The pose was fitted to some of the others, to more where a shift leaves it free to turn.
             const int fitted = isShifted ? 2 * sampleSize : sampleSize;
             if (2 * beside < others && chanceOfSoMany(others, beside - fitted, chance) > CERTAINLY)
@@ -313,17 +302,18 @@ Verdict::Marks within(double limit, const std::vector<double>& squared)
 double logFalseAlarms(
         InputArray points1, InputArray points2, InputArray inliers, bool epipolar, double threshold)
 {
-    const Mat first = pointsOf(points1, "logFalseAlarms", "points1"),
-              second = pointsOf(points2, "logFalseAlarms", "points2"), marks = inliers.getMat();
+    const Points first = pointsOf(points1, "logFalseAlarms", "points1"),
+                 second = pointsOf(points2, "logFalseAlarms", "points2");
+    const Mat marks = inliers.getMat();
     checkMatched(first, second, "logFalseAlarms");
     if (!marks.empty() && marks.type() != CV_8U)
         CV_Error(Error::StsBadArg, "logFalseAlarms: inliers must be CV_8U, a mark for each match");
-    if ((int)marks.total() != first.rows)
+    if (marks.total() != first.size())
         CV_Error(Error::StsUnmatchedSizes, format("logFalseAlarms: inliers has %d marks for %d matches",
-                                                   (int)marks.total(), first.rows));
+                                                   (int)marks.total(), (int)first.size()));
     if (!(threshold > 0) || cvIsInf(threshold))
         CV_Error(Error::StsOutOfRange, "logFalseAlarms: threshold, in pixels, must be over 0 and finite");
-    Verdict::Marks agreeing(first.rows);
+    Verdict::Marks agreeing(first.size());
     std::transform(
             marks.begin<uchar>(), marks.end<uchar>(), agreeing.begin(), [](uchar mark) { return mark != 0; });
     const Verdict verdict(first, second);
@@ -333,14 +323,14 @@ double logFalseAlarms(
     {
         const Matx33d model(found);
         wrong = errorsOfWrongMatches(verdict, [&](int i, int j) {
-            const Point2d &a = first.at<Point2d>(i), &b = second.at<Point2d>(j);
+            const Point2d &a = first[i], &b = second[j];
             const Vec3d p(a.x, a.y, 1), q(b.x, b.y, 1), there = model * p, back = model.t() * q;
             const double line2 = square(there[0]) + square(there[1]) + square(back[0]) + square(back[1]);
             const Point2d beside(b.x - there[0] / there[2], b.y - there[1] / there[2]);
             return epipolar ? square(q.dot(there)) / line2 : beside.ddot(beside);
         });
     }
-    return verdict.logFalseAlarms(Verdict::Marks(first.rows, true), agreeing, epipolar ? 7 : 4,
+    return verdict.logFalseAlarms(Verdict::Marks(first.size(), true), agreeing, epipolar ? 7 : 4,
             verdict.chance(epipolar ? Verdict::FROM_LINE : Verdict::FROM_POINT, threshold, wrong));
 }
 

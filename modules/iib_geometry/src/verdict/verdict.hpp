@@ -2,22 +2,19 @@
 #pragma once
 
 #include <functional>
-#include <vector>
 
-#include "opencv2/core.hpp"
+#include "../common/points.hpp"
 
 namespace cv::iib {
 
-/** Tests whether a model is significant by its number of false alarms: the expected number of models that agree as well among wrong
-matches (Moisan and Stival 2004, section 3). It is counted twice, and the larger number decides: in matches, and in places, since neighbouring
-matches may be wrong together. Places are cells of a 32nd of the diagonal of what the points span. */
+//! Tests whether a model is significant by its number of false alarms, as cv::iib::logFalseAlarms explains.
 class Verdict
 {
 public:
     typedef std::vector<bool> Marks;  //!< one for each match
 
-    //! Both N x 2, CV_64F, pixels; the same points twice if only one side is an image.
-    Verdict(const Mat& points1, const Mat& points2);
+    //! In pixels; the same object twice if only one side is an image.
+    Verdict(const Points& points1, const Points& points2);
 
     //! Where a match's error is measured from.
     enum Distance
@@ -87,5 +84,7 @@ std::vector<double> errorsOfWrongMatches(
 
 //! Which squared errors are below limit^2.
 Verdict::Marks within(double limit, const std::vector<double>& squared);
+
+inline int countOf(const Verdict::Marks& marks) { return (int)std::count(marks.begin(), marks.end(), true); }
 
 }  // namespace cv::iib

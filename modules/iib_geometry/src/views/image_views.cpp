@@ -8,7 +8,6 @@ namespace cv::iib {
 namespace {
 
 const int COARSE_POINTS = 270;  // of a view, during the search
-const double MARGIN = .1;       // of an image's size, around the part that the other image shows
 const int COARSE_SIDE = 640;    // pixels: longer side of an image, during the search
 
 Ptr<IIBDescriptorExtractor> extractorOf(int points, bool upright)
@@ -90,21 +89,9 @@ std::shared_ptr<const PreparedImage> ImageViews::prepared(const View& view) cons
 const std::vector<Described>& ImageViews::coarse(const View& view, const std::vector<float>& angles) const
 {
     const std::lock_guard<std::mutex> lock(mutex_);
-    std::vector<Described>& found = coarse_[view];
-    if (found.empty())
-        found = describe(view, angles);
-    return found;
-}
-
-std::vector<Described> ImageViews::coarseOnce(const View& view, const std::vector<float>& angles) const
-{
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return describe(view, angles);
-}
-
-//! Requires the lock.
-std::vector<Described> ImageViews::describe(const View& view, const std::vector<float>& angles) const
-{
+    std::vector<Described>& found = coarse_[{view, angles}];
+    if (!found.empty())
+        return found;
     if (base_.empty())
     {
         base_ = coarseView().pixels(image_);
@@ -121,7 +108,6 @@ std::vector<Described> ImageViews::describe(const View& view, const std::vector<
     }
     Mat codes;
     extractor->compute(pixels, all, codes);
-    std::vector<Described> found;
     const int n = (int)keypoints.size();
     for (int k = 0; k < (int)angles.size(); k++)
         found.push_back({{all.begin() + k * n, all.begin() + (k + 1) * n},
@@ -139,9 +125,9 @@ Matx33d ImageViews::toCoarse(const View& view) const
     return view.fromImage(coarseView().sizeOf(size())) * coarseView().fromImage(size());
 }
 
-std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map)
+std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map, double share)
 {
-    const Point2d margin(MARGIN * image.width, MARGIN * image.height), end(image.width - 1, image.height - 1);
+    const Point2d margin(share * image.width, share * image.height), end(image.width - 1, image.height - 1);
     const Point2d low = -margin, high = end + margin;
     std::vector<Point2d> corners;
     for (const Point2d& corner : {low, Point2d(high.x, low.y), high, Point2d(low.x, high.y)})

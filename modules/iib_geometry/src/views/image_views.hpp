@@ -53,12 +53,8 @@ public:
     //! A view prepared for refinement; that of the image itself is cached.
     std::shared_ptr<const PreparedImage> prepared(const View& view) const;
 
-    //! The strongest points of a coarse view, described at each angle (degrees or -1). Cached: all calls need the same
-    //! angles.
+    //! The strongest points of a coarse view, described at each angle (degrees or -1); cached.
     const std::vector<Described>& coarse(const View& view, const std::vector<float>& angles) const;
-
-    //! As coarse(), not cached.
-    std::vector<Described> coarseOnce(const View& view, const std::vector<float>& angles) const;
 
     //! From pixels of the image to pixels of coarse(view), in which large images are reduced.
     Matx33d toCoarse(const View& view) const;
@@ -67,7 +63,6 @@ private:
     std::shared_ptr<const DescribedView> extract(const View& view, float angle, const Mat& mask) const;
 
     View coarseView() const;
-    std::vector<Described> describe(const View& view, const std::vector<float>& angles) const;
 
     const Mat image_, mask_;
     const int maxFeatures_;
@@ -75,12 +70,12 @@ private:
     mutable Mat base_, baseMask_;  //!< reduced image and mask for coarse()
     mutable std::shared_ptr<const PreparedImage> prepared_;
     mutable std::map<View, std::shared_ptr<const DescribedView>> described_;
-    mutable std::map<View, std::vector<Described>> coarse_;
+    mutable std::map<std::pair<View, std::vector<float>>, std::vector<Described>> coarse_;
 };
 
 /** The corners of an image, with a margin, mapped to another image.
-@param map from pixels of the image to pixels of the other image. */
-std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map);
+@param map from pixels of the image to pixels of the other image. @param margin share of the image's size. */
+std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map, double margin = .1);
 
 //! Matches two views by the recommended matcher.
 std::vector<DMatch> matchesOf(const DescribedView& first, const DescribedView& second);

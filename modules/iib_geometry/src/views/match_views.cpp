@@ -20,9 +20,7 @@ public:
             OutputArray similarities, OutputArray view, InputArray mask, String* reason) const override
     {
         const ImageViews second(image.getMat(), mask.getMat(), maxFeatures_);
-        ViewMatches best = matchAsTheyAre(first_, second);
-        if (!best.isDecisive())
-            searchMatches(first_, second, maxTilt_, best);
+        const ViewMatches best = matchInSomeViews(first_, second, maxTilt_);
         writeRows(best.points1, points1);
         writeRows(best.points2, points2);
         writeRows(best.covariances, covariances);

@@ -10,8 +10,7 @@ and Yu 2009, section 2). */
 struct View
 {
     double longitude = 0;  //!< radians by which the image is rotated; 0 if both scales are equal
-    Vec2d scales{
-            1, 1};  //!< of the rotated image's width and height, positive; above 1 to enlarge small images
+    Vec2d scales{1, 1};    //!< of the rotated image's width and height; above 1 to enlarge small images
 
     static View reduced(double scale) { return {0, {scale, scale}}; }
     static View tilted(double tilt, double longitude) { return {longitude, {1 / tilt, 1}}; }
@@ -41,8 +40,7 @@ private:
 struct ViewPair
 {
     View views[2];
-    double angle =
-            0;  //!< degrees in [0, 360) by which the second view is rotated clockwise against the first
+    double angle = 0;  //!< degrees in [0, 360) by which the second view is rotated clockwise
 
     /** The views for an affine map between two images: along each axis, the image with more pixels is reduced.
     @param map from pixels of image 1 to pixels of image 2. */

@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_matches.hpp"
 
-#include "../common/points.hpp"
-#include "../verdict/verdict.hpp"
+#include "../precomp.hpp"
 #include "../verdict/support.hpp"
-#include "two_view_geometry.hpp"
+#include "../verdict/verdict.hpp"
+#include "opencv2/iib/verdict.hpp"
 #include "view_search.hpp"
 
 namespace cv::iib {
 namespace {
 
-const double DECISIVE = -25;            // log10 of false alarms below which the search ends
-const int LEAST_CLEAR = 100;            // matches: propagation of one wrong match may give fewer
-const double SHARE_CLEAR = .6;          // of matches with supporting neighbours: decisive without a geometry
-const double SHARE_INLIERS = .8;        // of the matches: with fewer, inliers alone are propagated again
-const int MOST_IMPROVED = 2;            // rounds
+const double DECISIVE = -25;      // log10 of false alarms below which the search ends
+const int LEAST_CLEAR = 100;      // matches: propagation of one wrong match may give fewer
+const double SHARE_CLEAR = .6;    // of matches with supporting neighbours: decisive without a geometry
+const double SHARE_INLIERS = .8;  // of the matches: with fewer, inliers alone are propagated again
+const int MOST_IMPROVED = 2;      // rounds
+const double THRESHOLD = 1.5;     // pixels from the epipolar line, or from the point mapped by the homography
+const double CONFIDENCE = .9999;
+const int MOST_TRIALS = 10000;
 const int SMALL = 480, WORKING = 1024;  // pixels of the longest side of a view
 
-std::vector<Point2d> placesOf(const Mat& points, const std::vector<uchar>& marks)
+Points placesOf(const Mat& points, const std::vector<uchar>& marks)
 {
-    std::vector<Point2d> chosen;
+    Points chosen;
     for (int i = 0; i < points.rows; i++)
         if (marks.empty() || marks[i])
             chosen.push_back(points.at<Point2f>(i));
@@ -27,64 +30,78 @@ std::vector<Point2d> placesOf(const Mat& points, const std::vector<uchar>& marks
 }
 
 //! Propagated matches of two views, in pixels of the views.
-struct Propagated
+ViewMatches propagated(const DescribedView& first, const DescribedView& second, std::vector<DMatch> matches)
 {
-    std::vector<DMatch> matches;
-    Mat points1, points2, covariances, similarities;
-
-    Propagated(const DescribedView& first, const DescribedView& second, const std::vector<DMatch>& given)
-        : matches(given)
-    {
-        propagateMatches(first.prepared, first.keypoints, second.prepared, second.keypoints, matches, points1,
-                points2, covariances, similarities);
-    }
-
-    TwoViewGeometry geometry() const
-    {
-        Mat doubles1, doubles2;
-        points1.convertTo(doubles1, CV_64F);
-        points2.convertTo(doubles2, CV_64F);
-        return TwoViewGeometry(doubles1, doubles2);
-    }
-};
-
-Mat allMoved(const Matx33d& by, const Mat& points)
-{
-    Mat result(points.rows, 2, CV_32F);
-    for (int i = 0; i < points.rows; i++)
-        result.at<Point2f>(i) = moved(by, points.at<Point2f>(i));
-    return result;
+    ViewMatches found;
+    propagateMatches(first.prepared, first.keypoints, second.prepared, second.keypoints, matches,
+            found.points1, found.points2, found.covariances, found.similarities);
+    return found;
 }
 
-//! Converts propagated matches to pixels of the images.
-ViewMatches inImages(const Propagated& propagated, const DescribedView& first, const DescribedView& second)
+//! Converts matches from pixels of the views to pixels of the images.
+void convertToImages(const DescribedView& first, const DescribedView& second, ViewMatches& found)
 {
     const Matx33d back1 = first.fromImage.inv(), back2 = second.fromImage.inv();
     const Matx22d J = back2.get_minor<2, 2>(0, 0);
-    ViewMatches found;
-    found.points1 = allMoved(back1, propagated.points1);
-    found.points2 = allMoved(back2, propagated.points2);
-    found.covariances = propagated.covariances;
-    found.similarities = propagated.similarities;
-    for (int i = 0; i < found.covariances.rows; i++)
+    for (int i = 0; i < found.points1.rows; i++)
     {
+        Point2f &one = found.points1.at<Point2f>(i), &other = found.points2.at<Point2f>(i);
+        one = moved(back1, one);
+        other = moved(back2, other);
         Vec3f& c = found.covariances.at<Vec3f>(i);
         const Matx22d there = J * Matx22d(c[0], c[1], c[1], c[2]) * J.t();
         c = Vec3d(there(0, 0), there(0, 1), there(1, 1));
     }
-    return found;
 }
+
+//! The inliers of a fundamental matrix or a homography, whichever has fewer false alarms.
+struct TwoViewGeometry
+{
+    std::vector<uchar> inliers;  //!< 1 or 0 for each match; empty if no geometry was found
+    double logFalseAlarms = std::numeric_limits<double>::infinity();
+
+    explicit TwoViewGeometry(const ViewMatches& given)
+    {
+        const Mat &points1 = given.points1, &points2 = given.points2;
+        for (bool epipolar : {true, false})
+        {
+            if (points1.rows < (epipolar ? 8 : 5))
+                continue;
+            std::vector<uchar> marks;
+            try
+            {
+                if (epipolar)
+                    findFundamentalMat(
+                            points1, points2, USAC_MAGSAC, THRESHOLD, CONFIDENCE, MOST_TRIALS, marks);
+                else
+                    findHomography(points1, points2, USAC_MAGSAC, THRESHOLD, marks, MOST_TRIALS, CONFIDENCE);
+            }
+            catch (const cv::Exception&)  // some versions of OpenCV throw for degenerate points
+            {
+                continue;
+            }
+            if ((int)marks.size() != points1.rows)
+                continue;
+            const double alarms = iib::logFalseAlarms(points1, points2, marks, epipolar, THRESHOLD);
+            if (alarms < logFalseAlarms)
+            {
+                logFalseAlarms = alarms;
+                inliers = marks;
+            }
+        }
+    }
+
+    int count() const { return (int)std::count(inliers.begin(), inliers.end(), 1); }
+};
 
 //! @param areImages whether the views are the images themselves: then support by neighbours can be decisive alone.
 ViewMatches matchTwoViews(const DescribedView& first, const DescribedView& second, bool areImages)
 {
     const std::vector<DMatch> given = matchesOf(first, second);
-    Propagated propagated(first, second, given);
-    ViewMatches found = inImages(propagated, first, second);
+    ViewMatches found = propagated(first, second, given);
     if (areImages)
     {
-        const std::vector<Point2d> places1 = placesOf(found.points1, {}),
-                                   places2 = placesOf(found.points2, {});
+        const Points places1 = placesOf(found.points1, {}), places2 = placesOf(found.points2, {});
         const Support support = Support::of(places1, places2);
         if (found.points1.rows >= LEAST_CLEAR && support.share() > SHARE_CLEAR &&
                 agreeFarApart(places1, places2, support.map))
@@ -95,7 +112,7 @@ ViewMatches matchTwoViews(const DescribedView& first, const DescribedView& secon
             return found;
         }
     }
-    TwoViewGeometry geometry = propagated.geometry();
+    TwoViewGeometry geometry(found);
     if (geometry.logFalseAlarms < Verdict::CERTAIN && geometry.count() < SHARE_INLIERS * found.points1.rows)
     {
         // In repeated patterns wrong matches propagate too, but they seldom agree with one geometry.
@@ -103,22 +120,22 @@ ViewMatches matchTwoViews(const DescribedView& first, const DescribedView& secon
         for (size_t i = 0; i < given.size(); i++)
             if (geometry.inliers[i])
                 agreeing.push_back(given[i]);
-        Propagated again(first, second, agreeing);
-        const TwoViewGeometry geometryAgain = again.geometry();
+        const ViewMatches again = propagated(first, second, agreeing);
+        const TwoViewGeometry geometryAgain(again);
         if (geometryAgain.count() > geometry.count())
         {
-            found = inImages(again, first, second);
-            std::swap(propagated, again);
+            found = again;
             geometry = geometryAgain;
         }
     }
-    if (!areImages && (areOneStructure(placesOf(propagated.points1, geometry.inliers)) ||
-                              areOneStructure(placesOf(propagated.points2, geometry.inliers))))
+    const bool isOneStructure =
+            !areImages && (areOneStructure(placesOf(found.points1, geometry.inliers)) ||
+                                  areOneStructure(placesOf(found.points2, geometry.inliers)));
+    convertToImages(first, second, found);
+    if (isOneStructure || geometry.count() == 0)
         return found;
-    if (geometry.count() == 0)
-        return found;
-    const std::vector<Point2d> places1 = placesOf(found.points1, geometry.inliers),
-                               places2 = placesOf(found.points2, geometry.inliers);
+    const Points places1 = placesOf(found.points1, geometry.inliers),
+                 places2 = placesOf(found.points2, geometry.inliers);
     const Matx33d map = Support::of(places1, places2).map;
     if (determinant(map) <= 0 || !agreeFarApart(places1, places2, map))
         return found;
@@ -153,16 +170,13 @@ void improve(const ImageViews& first, const ImageViews& second, Matx33d map, Vie
 
 bool ViewMatches::isDecisive() const { return logFalseAlarms < DECISIVE; }
 
-ViewMatches matchAsTheyAre(const ImageViews& first, const ImageViews& second)
+ViewMatches matchInSomeViews(const ImageViews& first, const ImageViews& second, double maxTilt)
 {
     ViewMatches best = matchTwoViews(*first.described(View()), *second.described(View()), true);
     if (best.isDecisive())
         improve(first, second, Matx33d::eye(), best);
-    return best;
-}
-
-void searchMatches(const ImageViews& first, const ImageViews& second, double maxTilt, ViewMatches& best)
-{
+    if (best.isDecisive())
+        return best;
     const int tried = searchViews(first, second, maxTilt, [&](const ViewCandidate& candidate, int) {
         if (haveSimilarViews(candidate.map, Matx33d::eye()))  // matched before the search
             return false;
@@ -174,6 +188,7 @@ void searchMatches(const ImageViews& first, const ImageViews& second, double max
         return best.isDecisive();
     });
     best.logFalseAlarms += std::log10((double)std::max(tried, 1));
+    return best;
 }
 
 }  // namespace cv::iib

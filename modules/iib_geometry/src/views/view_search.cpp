@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_search.hpp"
 
-#include "../common/points.hpp"
 #include "../verdict/support.hpp"
 
 namespace cv::iib {
@@ -49,10 +48,10 @@ Matx33d rotation(double degrees)
     return {c, -s, 0, s, c, 0, 0, 0, 1};
 }
 
-std::vector<Point2d> placesOf(const std::vector<KeyPoint>& keypoints, const std::vector<DMatch>& matches,
+Points placesOf(const std::vector<KeyPoint>& keypoints, const std::vector<DMatch>& matches,
         int DMatch::*index, const Matx33d& by)
 {
-    std::vector<Point2d> places;
+    Points places;
     for (const DMatch& match : matches)
         places.push_back(moved(by, keypoints[match.*index].pt));
     return places;
@@ -75,10 +74,8 @@ ViewCandidate compare(const ImageViews& first, const View& view1, const ImageVie
             std::vector<DMatch> matches;
             matcher.match(features1[i].codes, features2[j].codes, matches);
             const Matx33d map = to2 * rotation(angle) * to1.inv();
-            const std::vector<Point2d> places1 = placesOf(
-                                               features1[i].keypoints, matches, &DMatch::queryIdx, to1),
-                                       places2 = placesOf(
-                                               features2[j].keypoints, matches, &DMatch::trainIdx, to2);
+            const Points places1 = placesOf(features1[i].keypoints, matches, &DMatch::queryIdx, to1),
+                         places2 = placesOf(features2[j].keypoints, matches, &DMatch::trainIdx, to2);
             const Support support = Support::around(places1, places2, map, TOLERANCE);
             if (support.count > best.support)
                 best = {support.map, support.count};

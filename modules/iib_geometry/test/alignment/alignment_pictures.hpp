@@ -75,7 +75,31 @@ inline double cornerError(const Mat& found, const Matx33d& truth)
     return error;
 }
 
+//! The result of alignImages.
+struct Aligned
+{
+    Mat transform, error, matches;
+    String reason, note;
+    int simplest;
+    bool found;
+
+    Aligned(const Mat& reference, const Mat& image, int model)
+        : found(cv::iib::alignImages(reference, image, transform, model, error, matches, &reason, noArray(),
+                  noArray(), &simplest, &note))
+    {
+    }
+
+    bool isRefused(const char* why) const { return !found && reason.find(why) != String::npos; }
+    double at(int row, int column) const { return transform.at<double>(row, column); }
+    double largestError() const { return cv::norm(error, NORM_INF); }
+    double cornerError(const Matx33d& truth) const { return opencv_test::cornerError(transform, truth); }
+};
+
+const int MODELS[] = {cv::iib::ALIGN_TRANSLATION, cv::iib::ALIGN_SIMILARITY, cv::iib::ALIGN_AFFINE,
+        cv::iib::ALIGN_HOMOGRAPHY};
 const Matx33d TRANSLATION(1, 0, 7.3, 0, 1, -4.6, 0, 0, 1), SIMILARITY(1.04, -.1, 9, .1, 1.04, -12, 0, 0, 1),
         AFFINE(1.05, .03, 4, -.06, .97, 6, 0, 0, 1), HOMOGRAPHY(1.03, .04, 5, -.03, .98, 8, 1e-4, -8e-5, 1);
+//! A transform of each of the MODELS.
+const Matx33d TRUTHS[] = {TRANSLATION, SIMILARITY, AFFINE, HOMOGRAPHY};
 
 }  // namespace opencv_test

@@ -8,70 +8,47 @@
 namespace opencv_test { namespace {
 using namespace cv::iib;
 
-TEST(Alignment, finds_each_kind_of_transform_in_another_light)
+TEST(Alignment, finds_each_kind_of_transform_in_another_light_and_chooses_the_simplest)
 {
     const Mat reference = picture(1);
-    const std::pair<int, Matx33d> kinds[] = {{ALIGN_TRANSLATION, TRANSLATION}, {ALIGN_SIMILARITY, SIMILARITY},
-            {ALIGN_AFFINE, AFFINE}, {ALIGN_HOMOGRAPHY, HOMOGRAPHY}};
-    for (const auto& kind : kinds)
+    for (int model : MODELS)
     {
-        Mat transform, error, matches;
-        ASSERT_TRUE(
-                alignImages(reference, moved(reference, kind.second), transform, kind.first, error, matches));
-        ASSERT_EQ(CV_64F, transform.type());
-        EXPECT_EQ(1, transform.at<double>(2, 2));
-        EXPECT_LT(cornerError(transform, kind.second.inv()), .15) << kind.first;
-        ASSERT_EQ(Size(1, 4), error.size());
-        EXPECT_GT(3 * cv::norm(error, NORM_INF), cornerError(transform, kind.second.inv()));
-        EXPECT_LT(cv::norm(error, NORM_INF), .15);
-        ASSERT_EQ(4, matches.cols);
-        ASSERT_GE(matches.rows, 50);
-        for (int i = 0; i < matches.rows; i++)
+        const Matx33d truth = TRUTHS[model].inv();
+        const Mat image = moved(reference, TRUTHS[model]);
+        const Aligned result(reference, image, model);
+        ASSERT_TRUE(result.found) << result.reason;
+        ASSERT_EQ(CV_64F, result.transform.type());
+        EXPECT_EQ(1, result.at(2, 2));
+        EXPECT_LT(result.cornerError(truth), .15) << model;
+        ASSERT_EQ(Size(1, 4), result.error.size());
+        EXPECT_GT(3 * result.largestError(), result.cornerError(truth));
+        EXPECT_LT(result.largestError(), .15);
+        ASSERT_EQ(4, result.matches.cols);
+        ASSERT_GE(result.matches.rows, 50);
+        for (int i = 0; i < result.matches.rows; i++)
         {
-            const Vec4f m = matches.at<Vec4f>(i);
-            const Vec3d q = Matx33d(transform) * Vec3d(m[2], m[3], 1);
+            const Vec4f m = result.matches.at<Vec4f>(i);
+            const Vec3d q = Matx33d(result.transform) * Vec3d(m[2], m[3], 1);
             EXPECT_LE(std::hypot(q[0] / q[2] - m[0], q[1] / q[2] - m[1]), 1.51);
         }
-        const Matx33d T(transform);
-        EXPECT_TRUE(kind.first == ALIGN_HOMOGRAPHY || T(2, 0) == 0);
-        EXPECT_TRUE(kind.first != ALIGN_SIMILARITY || std::abs(T(0, 1) + T(1, 0)) < 1e-9);
-        EXPECT_TRUE(kind.first != ALIGN_TRANSLATION || std::abs(T(0, 0) - 1) < 1e-12);
+        EXPECT_TRUE(model == ALIGN_HOMOGRAPHY || result.at(2, 0) == 0);
+        EXPECT_TRUE(model != ALIGN_SIMILARITY || std::abs(result.at(0, 1) + result.at(1, 0)) < 1e-9);
+        EXPECT_TRUE(model != ALIGN_TRANSLATION || std::abs(result.at(0, 0) - 1) < 1e-12);
+        const Aligned chosen(reference, image, ALIGN_AUTO), rich(reference, image, ALIGN_HOMOGRAPHY);
+        ASSERT_TRUE(chosen.found && rich.found) << chosen.reason << rich.reason;
+        EXPECT_EQ(model, chosen.simplest);
+        EXPECT_LT(chosen.cornerError(truth), result.cornerError(truth) + .02);
+        EXPECT_EQ(model, rich.simplest);
+        EXPECT_EQ(model == ALIGN_HOMOGRAPHY, rich.note.empty()) << rich.note;
     }
-}
-
-TEST(Alignment, chooses_the_simplest_model_that_is_true)
-{
-    const Mat reference = picture(1);
-    const std::pair<int, Matx33d> kinds[] = {{ALIGN_TRANSLATION, TRANSLATION}, {ALIGN_SIMILARITY, SIMILARITY},
-            {ALIGN_AFFINE, AFFINE}, {ALIGN_HOMOGRAPHY, HOMOGRAPHY}};
-    for (const auto& kind : kinds)
-    {
-        const Mat image = moved(reference, kind.second);
-        int simplest = -1;
-        Mat transform, same;
-        ASSERT_TRUE(alignImages(reference, image, transform, ALIGN_AUTO, noArray(), noArray(), nullptr,
-                noArray(), noArray(), &simplest));
-        EXPECT_EQ(kind.first, simplest);
-        ASSERT_TRUE(alignImages(reference, image, same, kind.first));
-        EXPECT_LT(cornerError(transform, kind.second.inv()), cornerError(same, kind.second.inv()) + .02);
-        String note;
-        ASSERT_TRUE(alignImages(reference, image, same, ALIGN_HOMOGRAPHY, noArray(), noArray(), nullptr,
-                noArray(), noArray(), &simplest, &note));
-        EXPECT_EQ(kind.first, simplest);
-        EXPECT_EQ(kind.first == ALIGN_HOMOGRAPHY, note.empty()) << note;
-    }
-    int simplest = 0;
-    Mat transform;
-    EXPECT_FALSE(alignImages(reference, picture(2), transform, ALIGN_AUTO, noArray(), noArray(), nullptr,
-            noArray(), noArray(), &simplest));
-    EXPECT_EQ(-1, simplest);
+    EXPECT_EQ(-1, Aligned(reference, picture(2), ALIGN_AUTO).simplest);
 }
 
 //! Like drifting ice before a rock: a homography would fit parts of both.
 TEST(Alignment, chooses_the_transform_of_the_static_part)
 {
     const Mat reference = picture(41), ice = picture(42);
-    Mat image = moved(reference, TRANSLATION), transform, drifted, first = reference.clone(), x(SIZE, CV_32F),
+    Mat image = moved(reference, TRANSLATION), drifted, first = reference.clone(), x(SIZE, CV_32F),
         y = x.clone();
     for (int row = 0; row < SIZE.height; row++)
         for (int column = 0; column < SIZE.width; column++)
@@ -82,11 +59,10 @@ TEST(Alignment, chooses_the_transform_of_the_static_part)
     remap(ice, drifted, x, y, INTER_CUBIC, BORDER_REFLECT);
     ice.rowRange(190, 300).copyTo(first.rowRange(190, 300));
     drifted.rowRange(190, 300).copyTo(image.rowRange(190, 300));
-    int simplest = -1;
-    ASSERT_TRUE(alignImages(first, image, transform, ALIGN_AUTO, noArray(), noArray(), nullptr, noArray(),
-            noArray(), &simplest));
-    EXPECT_EQ(ALIGN_TRANSLATION, simplest);
-    EXPECT_LT(cornerError(transform, TRANSLATION.inv()), .3);
+    const Aligned chosen(first, image, ALIGN_AUTO);
+    ASSERT_TRUE(chosen.found) << chosen.reason;
+    EXPECT_EQ(ALIGN_TRANSLATION, chosen.simplest);
+    EXPECT_LT(chosen.cornerError(TRANSLATION.inv()), .3);
 }
 
 //! For white noise, the estimated errors are neither too small nor too large. For equal images they do not grow with the size.
@@ -96,7 +72,7 @@ TEST(Alignment, errors_match_white_noise)
     const int trials = 20;
     for (int trial = 0; trial < trials; trial++)
     {
-        Mat images[2], transform, error, noise(270, 360, CV_16S);
+        Mat images[2], noise(270, 360, CV_16S);
         RNG random(trial + 1);
         for (int i = 0; i < 2; i++)
         {
@@ -104,20 +80,19 @@ TEST(Alignment, errors_match_white_noise)
             cv::add(picture(50 + trial)(Rect(5 + 17 * i, 5 + 9 * i, 360, 270)), noise, images[i], noArray(),
                     CV_8U);
         }
-        ASSERT_TRUE(alignImages(images[0], images[1], transform, ALIGN_TRANSLATION, error));
-        squares += std::pow(cv::norm(Vec2d(transform.at<double>(0, 2) - 17, transform.at<double>(1, 2) - 9)) /
-                                    error.at<double>(0),
-                           2) /
-                   trials;
+        const Aligned result(images[0], images[1], ALIGN_TRANSLATION);
+        ASSERT_TRUE(result.found) << result.reason;
+        const double off = std::hypot(result.at(0, 2) - 17, result.at(1, 2) - 9);
+        squares += std::pow(off / result.error.at<double>(0), 2) / trials;
     }
     EXPECT_GT(squares, .3);
     EXPECT_LT(squares, 2);
     for (int times : {1, 6})
     {
-        Mat large, transform, error;
+        Mat large;
         resize(picture(51), large, Size(), times, times, INTER_CUBIC);
-        ASSERT_TRUE(alignImages(large, large, transform, ALIGN_TRANSLATION, error));
-        EXPECT_LT(error.at<double>(0), .02) << times;
+        const Aligned result(large, large, ALIGN_TRANSLATION);
+        EXPECT_TRUE(result.found && result.largestError() < .02) << times;
     }
 }
 
@@ -129,9 +104,9 @@ TEST(Alignment, finds_images_that_are_turned)
         const Mat by = getRotationMatrix2D(Point2f(200, 150), angle, 1);
         Matx33d truth = Matx33d::eye();
         by.copyTo(Mat(truth, false).rowRange(0, 2));
-        Mat transform;
-        ASSERT_TRUE(alignImages(reference, moved(reference, truth), transform, ALIGN_SIMILARITY)) << angle;
-        EXPECT_LT(cornerError(transform, truth.inv()), .3);
+        const Aligned result(reference, moved(reference, truth), ALIGN_SIMILARITY);
+        ASSERT_TRUE(result.found) << angle;
+        EXPECT_LT(result.cornerError(truth.inv()), .3);
     }
 }
 
@@ -210,7 +185,8 @@ TEST(Alignment, invalid_arguments_are_refused)
     Mat transform;
     EXPECT_THROW(alignImages(picture(5), picture(5), transform, 5), cv::Exception);
     EXPECT_THROW(alignImages(picture(5), picture(5), transform, -1), cv::Exception);
-    EXPECT_THROW(alignImages(picture(5), Mat(SIZE, CV_32S), transform), cv::Exception);
+    for (const Size& size : {SIZE, Size(1100, 1100)})
+        EXPECT_THROW(alignImages(picture(5), Mat(size, CV_32S), transform), cv::Exception);
 }
 
 TEST(Alignment, one_reference_serves_many_images_as_each_alone)
@@ -282,13 +258,13 @@ TEST(Alignment, deviation_predicts_the_errors_of_the_corners)
         const int trials = 100;
         for (int trial = 0; trial < trials; trial++)
         {
-            Mat image(120, 2, CV_64F), reference(120, 2, CV_64F);
-            for (int i = 0; i < image.rows; i++)
-                for (int c = 0; c < 2; c++)
+            Points image(120), reference(120);
+            for (int i = 0; i < 120; i++)
+                for (double Point2d::*axis : {&Point2d::x, &Point2d::y})
                 {
-                    image.at<double>(i, c) = random.uniform(0., 300.);
-                    reference.at<double>(i, c) =
-                            i < 20 ? random.uniform(0., 300.) : image.at<double>(i, c) + random.gaussian(.4);
+                    image[i].*axis = random.uniform(0., 300.);
+                    reference[i].*axis =
+                            i < 20 ? random.uniform(0., 300.) : image[i].*axis + random.gaussian(.4);
                 }
             const PlanarProblem problem(reference, image, kind);
             const Fit<PlanarProblem> fit = robustFit(problem);
@@ -308,10 +284,10 @@ TEST(Alignment, deviation_predicts_the_errors_of_the_corners)
 TEST(Alignment, derivatives_are_those_of_finite_differences)
 {
     RNG random(7);
-    Mat image(40, 2, CV_64F), reference(40, 2, CV_64F);
+    Points image(40), reference;
     random.fill(image, RNG::UNIFORM, 0, 300);
-    random.fill(reference, RNG::NORMAL, 0, 3);
-    reference += image;
+    for (const Point2d& point : image)
+        reference.push_back(point + Point2d(random.gaussian(3), random.gaussian(3)));
     const Matx33d model(1.01, .02, .01, -.01, .99, -.01, .01, .02, 1);
     for (int kind : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
         expectDerivatives(PlanarProblem(reference, image, kind), model, 5, 1e-3);

@@ -20,59 +20,54 @@ TEST(Alignment, refuses_images_of_other_scenes_and_without_points)
 //! Images of three spots have a dozen matches. That none of so few wrong matches is near says little about their chance.
 TEST(Alignment, refuses_a_few_matches_that_agree_by_chance)
 {
-    Mat images[2], transform, matches;
+    Mat images[2];
     for (int i = 0; i < 2; i++)
         GaussianBlur(spots(315 + i, 3, Size(200, 150)), images[i], Size(), 3);
-    EXPECT_FALSE(alignImages(images[0], images[1], transform, ALIGN_SIMILARITY, noArray(), matches));
-    EXPECT_GE(matches.rows, 4);
+    const Aligned result(images[0], images[1], ALIGN_SIMILARITY);
+    EXPECT_FALSE(result.found);
+    EXPECT_GE(result.matches.rows, 4);
 }
 
-TEST(Alignment, refuses_pictures_that_share_a_part_alone_in_any_model)
+//! A mask of rectangles.
+Mat maskOf(const std::vector<Rect>& parts)
 {
-    for (int side : {80, 115})
+    Mat mask(SIZE, CV_8U, Scalar(0));
+    for (const Rect& part : parts)
+        mask(part) = 1;
+    return mask;
+}
+
+/** Different pictures share small parts: a logo, two stamps, a logo that a homography joins with a few distant wrong matches, so that the inliers
+span a large area; or overlays: a car's bonnet, a frame, four captions. */
+TEST(Alignment, refuses_pictures_that_share_parts_alone)
+{
+    const std::vector<int> all(MODELS, MODELS + 4), two = {ALIGN_TRANSLATION, ALIGN_HOMOGRAPHY};
+    const Mat joined = maskOf({{15, 15, 55, 55}});
+    const struct
     {
-        const Rect part(10, 10, side, side);
-        Mat first = picture(11), second = picture(12), transform;
-        for (const Mat& image : {first, second})
-            picture(13)(part).copyTo(image(part));
-        for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
+        int first, second;
+        Mat shared;
+        std::vector<int> models;
+        const char* reason;
+    } cases[] = {{11, 12, maskOf({{10, 10, 80, 80}}), all, "a logo"},
+            {11, 12, maskOf({{10, 10, 115, 115}}), all, "a logo"},
+            {11, 12, maskOf({{10, 10, 70, 70}, {320, 225, 70, 70}}), all, "a caption"},
+            {27, 127, joined, {ALIGN_HOMOGRAPHY}, ""}, {30, 130, joined, {ALIGN_HOMOGRAPHY}, ""},
+            {60, 160, joined, {ALIGN_HOMOGRAPHY}, ""},
+            {11, 12, maskOf({{0, 220, 400, 80}}), two, "equal to the pixel"},
+            {11, 12, 1 - maskOf({{20, 20, 360, 260}}), two, "equal to the pixel"},
+            {11, 12, maskOf({{10, 8, 120, 34}, {260, 8, 120, 34}, {10, 258, 120, 34}, {260, 258, 120, 34}}),
+                    two, "equal to the pixel"}};
+    for (const auto& c : cases)
+        for (int model : c.models)
         {
-            Mat matches;
-            String reason;
-            EXPECT_FALSE(alignImages(first, second, transform, model, noArray(), matches, &reason))
-                    << side << " " << model;
-            EXPECT_GE(matches.rows, 16) << "the part has enough matches";
-            EXPECT_NE(reason.find("a logo"), String::npos) << reason;
+            Mat images[] = {picture(c.first), picture(c.second)};
+            for (Mat& image : images)
+                picture(13).copyTo(image, c.shared);
+            const Aligned result(images[0], images[1], model);
+            EXPECT_TRUE(result.isRefused(c.reason)) << c.first << ' ' << model << ": " << result.reason;
+            EXPECT_TRUE(String(c.reason) != "a logo" || result.matches.rows >= 16) << "enough matches";
         }
-    }
-}
-
-//! A homography fits a few distant wrong matches too, so the inliers span a large area.
-TEST(Alignment, refuses_a_part_that_a_homography_joins_with_wrong_matches)
-{
-    for (int seed : {27, 30, 60})
-    {
-        const Rect part(15, 15, 55, 55);
-        Mat first = picture(seed), second = picture(seed + 100), transform, matches;
-        for (const Mat& image : {first, second})
-            picture(13)(part).copyTo(image(part));
-        EXPECT_FALSE(alignImages(first, second, transform, ALIGN_HOMOGRAPHY, noArray(), matches)) << seed;
-    }
-}
-
-//! Like a logo in one corner and a caption, or two stamps, with no matches between them.
-TEST(Alignment, refuses_pictures_that_share_two_parts_alone)
-{
-    Mat first = picture(11), second = picture(12), transform;
-    for (const Rect& part : {Rect(10, 10, 70, 70), Rect(320, 225, 70, 70)})
-        for (const Mat& image : {first, second})
-            picture(13)(part).copyTo(image(part));
-    for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
-    {
-        String reason;
-        EXPECT_FALSE(alignImages(first, second, transform, model, noArray(), noArray(), &reason)) << model;
-        EXPECT_NE(reason.find("a caption"), String::npos) << reason;
-    }
 }
 
 //! The rest of the picture is hidden in one image, by a mask or a black sky, so it has no matches.
@@ -91,7 +86,7 @@ TEST(Alignment, finds_a_part_that_is_all_that_both_images_show)
                 << reason;
         EXPECT_LT(cornerError(transform, Matx33d::eye()), 3 * cv::norm(error, NORM_INF)) << model;
     };
-    for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
+    for (int model : MODELS)
     {
         expectFound(reference, inOtherLight(reference), model, mask);
         expectFound(reference, night, model, Mat());
@@ -103,7 +98,6 @@ TEST(Alignment, finds_a_part_that_is_all_that_both_images_show)
 TEST(Alignment, refuses_a_logo_that_is_all_that_an_image_shows)
 {
     const Rect part(10, 10, 80, 80);
-    Mat transform;
     for (bool noisy : {false, true})  // noise has keypoints too
     {
         Mat black = Mat::zeros(SIZE, CV_8U), other = picture(12);
@@ -111,12 +105,10 @@ TEST(Alignment, refuses_a_logo_that_is_all_that_an_image_shows)
             picture(13)(part).copyTo(image(part));
         if (noisy)
             black = inOtherLight(black);
-        for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE, ALIGN_HOMOGRAPHY})
+        for (int model : MODELS)
         {
-            String reason;
-            EXPECT_FALSE(alignImages(other, black, transform, model, noArray(), noArray(), &reason)) << model;
-            EXPECT_NE(reason.find("a logo"), String::npos) << reason;
-            EXPECT_FALSE(alignImages(black, other, transform, model)) << model;
+            EXPECT_TRUE(Aligned(other, black, model).isRefused("a logo")) << model;
+            EXPECT_FALSE(Aligned(black, other, model).found) << model;
         }
     }
 }
@@ -124,7 +116,7 @@ TEST(Alignment, refuses_a_logo_that_is_all_that_an_image_shows)
 //! However many matches a logo at two places has, it is small; a larger part at the same places is one that both show.
 TEST(Alignment, refuses_a_logo_at_two_places)
 {
-    Mat fine, transform;
+    Mat fine;
     resize(picture(13), fine, Size(), .5, .5, INTER_AREA);
     for (int side : {76, 120})
     {
@@ -137,7 +129,7 @@ TEST(Alignment, refuses_a_logo_at_two_places)
         }
         for (int model : {ALIGN_TRANSLATION, ALIGN_HOMOGRAPHY})
             for (int k : {0, 1})
-                EXPECT_EQ(side > 100, alignImages(images[k], images[1 - k], transform, model)) << side;
+                EXPECT_EQ(side > 100, Aligned(images[k], images[1 - k], model).found) << side;
     }
 }
 
@@ -150,7 +142,7 @@ TEST(Alignment, errors_include_the_displacement_of_a_part)
         Mat reference;
         resize(picture(16), reference, Size(), times, times, INTER_CUBIC);
         const int beside = std::max(4, 2 * times), side = 60 * times;
-        Mat image = reference.clone(), transform, error;
+        Mat image = reference.clone();
         for (int y = 0; y < reference.rows; y += side)
             for (int x = 0; x < reference.cols; x += 2 * side)
             {
@@ -160,11 +152,10 @@ TEST(Alignment, errors_include_the_displacement_of_a_part)
                     continue;
                 reference(square + Point(beside, 0)).copyTo(image(square));
             }
-        String reason;
-        ASSERT_TRUE(alignImages(reference, image, transform, ALIGN_HOMOGRAPHY, error, noArray(), &reason))
-                << reason;
+        const Aligned result(reference, image, ALIGN_HOMOGRAPHY);
+        ASSERT_TRUE(result.found) << result.reason;
         for (int k = 0; k < 4; k++)
-            EXPECT_GT(error.at<double>(k), beside / 2.) << times;
+            EXPECT_GT(result.error.at<double>(k), beside / 2.) << times;
     }
 }
 
@@ -172,7 +163,7 @@ TEST(Alignment, errors_include_the_displacement_of_a_part)
 TEST(Alignment, errors_include_depth_off_the_plane)
 {
     const Mat reference = picture(16);
-    Mat image = reference.clone(), transform, error;
+    Mat image = reference.clone();
     for (int k = 0; k < 48; k++)
         if (k * 7 % 12 >= 8)  // of twelve squares, two are displaced by 4 pixels and two by 9 to 16
         {
@@ -180,34 +171,29 @@ TEST(Alignment, errors_include_depth_off_the_plane)
             const Rect square(k % 8 * 50, k / 8 * 50, std::min(50, 400 - by - k % 8 * 50), 50);
             reference(square + Point(by, 0)).copyTo(image(square));
         }
-    String reason;
-    ASSERT_TRUE(alignImages(reference, image, transform, ALIGN_HOMOGRAPHY, error, noArray(), &reason))
-            << reason;
-    EXPECT_GT(error.at<double>(0), 6);
+    const Aligned result(reference, image, ALIGN_HOMOGRAPHY);
+    ASSERT_TRUE(result.found) << result.reason;
+    EXPECT_GT(result.error.at<double>(0), 6);
 }
 
 TEST(Alignment, names_exposure_and_overlap)
 {
-    Mat white, transform;
-    String reason;
+    Mat white;
     picture(1).convertTo(white, CV_8U, 16);
-    EXPECT_FALSE(alignImages(picture(1), white, transform, ALIGN_HOMOGRAPHY, noArray(), noArray(), &reason));
-    EXPECT_NE(reason.find("of the image is black or white"), String::npos) << reason;
+    EXPECT_TRUE(Aligned(picture(1), white, ALIGN_HOMOGRAPHY).isRefused("of the image is black or white"));
     const Mat wide = spots(5, 700, Size(700, 300));
-    EXPECT_FALSE(alignImages(wide.colRange(0, 360), wide.colRange(340, 700), transform, ALIGN_HOMOGRAPHY,
-            noArray(), noArray(), &reason));
-    EXPECT_NE(reason.find("overlap"), String::npos) << reason;
+    EXPECT_TRUE(
+            Aligned(wide.colRange(0, 360), wide.colRange(340, 700), ALIGN_HOMOGRAPHY).isRefused("overlap"));
 }
 
 //! A third of the picture is too large for a logo.
 TEST(Alignment, finds_a_part_of_a_picture)
 {
     const Mat whole = picture(14);
-    Mat transform, error;
-    ASSERT_TRUE(alignImages(
-            whole, inOtherLight(whole(Rect(150, 40, 200, 200))), transform, ALIGN_TRANSLATION, error));
-    EXPECT_NEAR(150, transform.at<double>(0, 2), .1);
-    EXPECT_NEAR(40, transform.at<double>(1, 2), .1);
+    const Aligned result(whole, inOtherLight(whole(Rect(150, 40, 200, 200))), ALIGN_TRANSLATION);
+    ASSERT_TRUE(result.found) << result.reason;
+    EXPECT_NEAR(150, result.at(0, 2), .1);
+    EXPECT_NEAR(40, result.at(1, 2), .1);
 }
 
 TEST(Alignment, refuses_an_untrue_model_and_names_the_true_one)
@@ -231,14 +217,12 @@ TEST(Alignment, refuses_an_untrue_model_and_names_the_true_one)
     for (const auto& c : cases)
     {
         const Mat image = moved(reference, c.truth);
-        Mat transform, error;
-        String reason;
-        EXPECT_FALSE(alignImages(reference, image, transform, c.model, error, noArray(), &reason)) << c.other;
-        EXPECT_TRUE(transform.empty() && error.empty());
-        EXPECT_NE(reason.find(c.other), String::npos) << reason;
-        EXPECT_TRUE(alignImages(reference, image, transform, c.right, error, noArray(), &reason)) << reason;
-        EXPECT_EQ("", reason);
-        EXPECT_LT(cornerError(transform, c.truth.inv()), .3) << c.other;
+        const Aligned untrue(reference, image, c.model), right(reference, image, c.right);
+        EXPECT_TRUE(untrue.isRefused(c.other)) << c.other << ": " << untrue.reason;
+        EXPECT_TRUE(untrue.transform.empty() && untrue.error.empty());
+        ASSERT_TRUE(right.found) << right.reason;
+        EXPECT_EQ("", right.reason);
+        EXPECT_LT(right.cornerError(c.truth.inv()), .3) << c.other;
     }
 }
 
@@ -252,7 +236,7 @@ TEST(Alignment, noise_does_not_refute_a_simple_model)
     } cases[] = {{100, 1, 5, 15}, {100, 1, 8, 30}, {104, 1, 5, 5}, {103, 2, 6, 30}, {103, 2, 16, 5}};
     for (const auto& c : cases)
     {
-        Mat whole, images[2], transform;
+        Mat whole, images[2];
         resize(picture(c.seed), whole, Size(), c.times, c.times, INTER_CUBIC);
         const Rect part(0, 0, whole.cols - 20, whole.rows - 20);
         for (int i = 0; i < 2; i++)
@@ -265,11 +249,7 @@ TEST(Alignment, noise_does_not_refute_a_simple_model)
             cv::add(image, noise, images[i], noArray(), CV_8U);
         }
         for (int model : {ALIGN_TRANSLATION, ALIGN_SIMILARITY, ALIGN_AFFINE})
-        {
-            String reason;
-            EXPECT_TRUE(alignImages(images[0], images[1], transform, model, noArray(), noArray(), &reason))
-                    << c.blur << " " << c.noise << ": " << reason;
-        }
+            EXPECT_EQ("", Aligned(images[0], images[1], model).reason) << c.blur << " " << c.noise;
     }
 }
 
@@ -279,16 +259,14 @@ TEST(Alignment, refuses_an_untrue_model_of_large_images)
     const Size size(3200, 2400);
     for (double pixels : {2., 1.})  // at the corners
     {
-        Mat reference, image, transform, error;
+        Mat reference, image;
         resize(picture(24), reference, size, 0, 0, INTER_CUBIC);
         const Mat turn = getRotationMatrix2D(Point2f(1600, 1200), pixels / 2000 * 180 / CV_PI, 1);
         warpAffine(reference, image, turn, size, INTER_CUBIC, BORDER_REFLECT);
-        String reason;
-        EXPECT_FALSE(alignImages(reference, image, transform, ALIGN_TRANSLATION, error, noArray(), &reason));
-        EXPECT_NE(reason.find("SIMILARITY agrees"), String::npos) << reason;
-        ASSERT_TRUE(alignImages(reference, image, transform, ALIGN_SIMILARITY, error, noArray(), &reason))
-                << reason;
-        EXPECT_LT(cv::norm(error, NORM_INF), .5);
+        EXPECT_TRUE(Aligned(reference, image, ALIGN_TRANSLATION).isRefused("SIMILARITY agrees"));
+        const Aligned right(reference, image, ALIGN_SIMILARITY);
+        ASSERT_TRUE(right.found) << right.reason;
+        EXPECT_LT(right.largestError(), .5);
     }
 }
 
@@ -296,16 +274,14 @@ TEST(Alignment, refuses_an_untrue_model_of_large_images)
 TEST(Alignment, refuses_parallax)
 {
     const Mat wall = picture(16);
-    Mat image = inOtherLight(wall), transform;
+    Mat image = inOtherLight(wall);
     const Mat relit = image.clone();
     for (int y = 0; y < 300; y += 30)
     {
         const int by = y < 120 ? 20 : 20 + y / 4;
         relit(Rect(by, y, 400 - by, 30)).copyTo(image(Rect(0, y, 400 - by, 30)));
     }
-    String reason;
-    EXPECT_FALSE(alignImages(wall, image, transform, ALIGN_AFFINE, noArray(), noArray(), &reason));
-    EXPECT_NE(reason.find("parallax"), String::npos) << reason;
+    EXPECT_TRUE(Aligned(wall, image, ALIGN_AFFINE).isRefused("parallax"));
 }
 
 /** A third of the image moves, like a second plane or a block of text below an added line. The rest has a transform that is as exact
@@ -318,16 +294,14 @@ TEST(Alignment, finds_the_static_part_beside_a_part_that_moved)
         resize(picture(16), picture1, Size(), times, times, INTER_CUBIC);
         for (const Point& by : {Point(8, 0) * times, Point(0, -40) * times})
         {
-            Mat image = inOtherLight(picture1), transform, error;
+            Mat image = inOtherLight(picture1);
             const Rect part(0, by.y < 0 ? 150 * times : 0, 392 * times, 110 * times);
             inOtherLight(picture1)(part + by).copyTo(image(part));
-            String reason, note;
-            ASSERT_TRUE(alignImages(picture1, image, transform, ALIGN_HOMOGRAPHY, error, noArray(), &reason,
-                    noArray(), noArray(), nullptr, &note))
-                    << reason;
-            EXPECT_LT(cornerError(transform, Matx33d::eye()), .3 * times);
-            EXPECT_LT(cv::norm(error, NORM_INF), .5 * times);
-            EXPECT_NE(note.find("moved otherwise"), String::npos) << note;
+            const Aligned result(picture1, image, ALIGN_HOMOGRAPHY);
+            ASSERT_TRUE(result.found) << result.reason;
+            EXPECT_LT(result.cornerError(Matx33d::eye()), .3 * times);
+            EXPECT_LT(result.largestError(), .5 * times);
+            EXPECT_NE(result.note.find("moved otherwise"), String::npos) << result.note;
         }
     }
 }
@@ -352,15 +326,15 @@ TEST(Alignment, chooses_no_untrue_model_of_another_part)
         }
         warpAffine(images[1], images[1], rotation, Size(), INTER_CUBIC, BORDER_REPLICATE);
         images[1] *= .8;
-        Mat transform;
-        ASSERT_TRUE(alignImages(images[0], images[1], transform, ALIGN_AUTO));
+        const Aligned result(images[0], images[1], ALIGN_AUTO);
+        ASSERT_TRUE(result.found) << result.reason;
         double error = 1;
         for (int by : {0, 34})
         {
             const Matx33d truth = Matx33d(rotation(0, 0), rotation(0, 1), rotation(0, 2), rotation(1, 0),
                                           rotation(1, 1), rotation(1, 2), 0, 0, 1) *
                                   Matx33d(1, 0, 0, 0, 1, by, 0, 0, 1);
-            error = std::min(error, cornerError(transform, truth.inv()));
+            error = std::min(error, result.cornerError(truth.inv()));
         }
         EXPECT_LT(error, .5);
     }
@@ -372,7 +346,7 @@ TEST(Alignment, finds_a_place_in_one_part_of_the_image)
     const Matx33d by(1, 0, 3, 0, 1, -2, 0, 0, 1);
     for (double times : {1., 3.})
     {
-        Mat reference = picture(31), image = picture(32), transform, error;
+        Mat reference = picture(31), image = picture(32);
         const Rect land(0, 150, 190, 150);  // a quarter
         const Mat land1 = picture(33);
         land1(land).copyTo(reference(land));
@@ -381,36 +355,14 @@ TEST(Alignment, finds_a_place_in_one_part_of_the_image)
         resize(image, image, Size(), times, times, INTER_CUBIC);
         for (int swapped = 0; swapped < 2; swapped++)
         {
-            String reason, note;
-            ASSERT_TRUE(alignImages(swapped ? image : reference, swapped ? reference : image, transform,
-                    ALIGN_HOMOGRAPHY, error, noArray(), &reason, noArray(), noArray(), nullptr, &note))
-                    << reason;
-            const Vec3d corner = Matx33d(transform) * Vec3d(0, 299 * times, 1);
+            const Aligned result(swapped ? image : reference, swapped ? reference : image, ALIGN_HOMOGRAPHY);
+            ASSERT_TRUE(result.found) << result.reason;
+            const Vec3d corner = Matx33d(result.transform) * Vec3d(0, 299 * times, 1);
             EXPECT_NEAR((swapped ? 3 : -3) * times, corner[0] / corner[2], 1);
-            EXPECT_NE(note.find("one part"), String::npos) << note;
-            EXPECT_GT(error.at<double>(1), 2 * error.at<double>(3)) << "far from the matches";
+            EXPECT_NE(result.note.find("one part"), String::npos) << result.note;
+            EXPECT_GT(result.error.at<double>(1), 2 * result.error.at<double>(3)) << "far from the matches";
         }
     }
-}
-
-//! Different pictures share a strip such as a car's bonnet, a frame, or four captions.
-TEST(Alignment, refuses_overlays_on_different_pictures)
-{
-    Mat strip = Mat::zeros(SIZE, CV_8U), frame(SIZE, CV_8U, Scalar(1)), captions = strip.clone(), transform;
-    strip.rowRange(220, 300) = 1;
-    frame(Rect(20, 20, 360, 260)) = 0;
-    for (int k = 0; k < 4; k++)
-        captions(Rect(10 + 250 * (k % 2), 8 + 250 * (k / 2), 120, 34)) = 1;
-    for (const Mat& over : {strip, frame, captions})
-        for (int model : {ALIGN_TRANSLATION, ALIGN_HOMOGRAPHY})
-        {
-            Mat images[] = {picture(11), picture(12)};
-            for (Mat& image : images)
-                picture(13).copyTo(image, over);
-            String reason;
-            EXPECT_FALSE(alignImages(images[0], images[1], transform, model, noArray(), noArray(), &reason));
-            EXPECT_NE(reason.find("equal to the pixel"), String::npos) << reason;
-        }
 }
 
 //! Frames of a telescope: the stars moved, and the camera's hot pixels, or dust of five pixels, did not.
@@ -419,7 +371,7 @@ TEST(Alignment, refuses_hot_pixels_and_dust)
     for (int arm : {0, 1})
     {
         RNG random(3);
-        Mat sky[2], images[2], transform;
+        Mat sky[2], images[2];
         for (Mat& each : sky)
         {
             each.create(300, 400, CV_32F);
@@ -443,10 +395,7 @@ TEST(Alignment, refuses_hot_pixels_and_dust)
         }
         for (int i = 0; i < 2; i++)
             sky[i].convertTo(images[i], CV_8U);
-        String reason;
-        EXPECT_FALSE(alignImages(
-                images[0], images[1], transform, ALIGN_TRANSLATION, noArray(), noArray(), &reason));
-        EXPECT_NE(reason.find("hot pixels"), String::npos) << reason;
+        EXPECT_TRUE(Aligned(images[0], images[1], ALIGN_TRANSLATION).isRefused("hot pixels"));
     }
 }
 

@@ -36,12 +36,13 @@ struct PoseProblem
     void find(LocatedImage& found) const
     {
         PreparedPictures pictures(map.images.size());
-        findPose(matches, map, pictures, VGA, found);
+        findPose(matches, map, pictures, found);
     }
 
     LocatedImage found() const
     {
         LocatedImage image;
+        image.features.camera = VGA;
         image.features.picture = pictureOf(Mat(VGA.size, CV_8U, Scalar(128)));
         find(image);
         return image;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include "pose/camera_pose.hpp"
-#include "map/map_error.hpp"
 #include "map/triangulation.hpp"
 #include "../test_precomp.hpp"
 
@@ -87,8 +86,7 @@ TEST(MapError, of_few_images_predicts_errors_of_poses)
             Affine3d pose = truth;
             Matx66d covariance;
             ASSERT_TRUE(refinePose(matches, Lens(VGA), pose, covariance));
-            const Matx66d error =
-                    inWorld(mapError(scene.map), pose, medianDistance(inCamera(pointsOf(matches), pose)));
+            const Matx66d error = inWorld(mapError(scene.map), pose, medianDistance(inCamera(matches, pose)));
             const Matx33d reported = error.get_minor<3, 3>(0, 0);
             const Vec3d moved = inverse(truth).translation() - inverse(pose).translation();
             const double squared = moved.dot(reported.inv(DECOMP_SVD) * moved);

@@ -5,7 +5,6 @@
 #include "../derivatives.hpp"
 #include "pose/epipolar_problem.hpp"
 #include "pose/five_points.hpp"
-#include "pose/real_roots.hpp"
 #include "two_cameras.hpp"
 
 namespace opencv_test { namespace {
@@ -37,12 +36,8 @@ TEST(RelativePose, five_points_give_essential_matrices_and_the_true_one_among_th
         Point2d first[5], second[5];
         for (int i = 0; i < 5; i++)
         {
-            const Vec3d u = CAMERA.inv() *
-                            Vec3d(views.points1.at<double>(i, 0), views.points1.at<double>(i, 1), 1),
-                        v = CAMERA.inv() *
-                            Vec3d(views.points2.at<double>(i, 0), views.points2.at<double>(i, 1), 1);
-            first[i] = Point2d(u[0], u[1]);
-            second[i] = Point2d(v[0], v[1]);
+            first[i] = moved(CAMERA.inv(), views.points1[i]);
+            second[i] = moved(CAMERA.inv(), views.points2[i]);
         }
         std::vector<Matx33d> essentials;
         fivePointEssentials(first, second, essentials);
@@ -92,74 +87,15 @@ TEST(RelativePose, is_found_among_wrong_matches)
         for (int trial = 0; trial < 10; trial++)
         {
             const RelativePose truth = randomPose(random, trial % 2 ? .3 : .02);
-            const Views views(random, truth, 200, wrong, .2);
-            Mat R, t, inliers;
-            ASSERT_TRUE(
-                    findRelativePose(views.points1, views.points2, Mat(CAMERA), Mat(CAMERA), R, t, inliers));
-            EXPECT_EQ(CV_64F, R.type());
-            EXPECT_EQ(Size(1, 3), t.size());
-            EXPECT_NEAR(1, cv::norm(t), 1e-12);
-            EXPECT_NEAR(0, cv::norm(Matx33d(R) * Matx33d(R).t() - Matx33d::eye()), 1e-12);
-            EXPECT_LT(cv::norm(stepBetween({R, Vec3d(t)}, truth)), .03) << wrong << ' ' << trial;
-            ASSERT_EQ(Size(1, 200), inliers.size());
-            EXPECT_GT(countNonZero(inliers.rowRange(wrong, 200)), .85 * (200 - wrong));
-            EXPECT_LE(countNonZero(inliers.rowRange(0, wrong)), 10);
+            const PoseResult found(Views(random, truth, 200, wrong, .2));
+            ASSERT_TRUE(found.found) << found.reason;
+            EXPECT_NEAR(1, cv::norm(found.pose.t), 1e-12);
+            EXPECT_NEAR(0, cv::norm(found.pose.R * found.pose.R.t() - Matx33d::eye()), 1e-12);
+            EXPECT_LT(cv::norm(found.error(truth)), .03) << wrong << ' ' << trial;
+            ASSERT_EQ(Size(1, 200), found.inliers.size());
+            EXPECT_GT(countNonZero(found.inliers.rowRange(wrong, 200)), .85 * (200 - wrong));
+            EXPECT_LE(countNonZero(found.inliers.rowRange(0, wrong)), 10);
         }
-}
-
-TEST(RelativePose, is_the_same_again_in_both_depths_and_layouts)
-{
-    RNG random(6);
-    const Views views(random, randomPose(random, .2), 100, 30, .2);
-    Mat first, second, R[2], t[2];
-    views.points1.convertTo(first, CV_32F);
-    views.points2.convertTo(second, CV_32F);
-    std::vector<Point2d> pairs1, pairs2;
-    for (int i = 0; i < first.rows; i++)
-    {
-        pairs1.push_back(first.at<Point2f>(i));
-        pairs2.push_back(second.at<Point2f>(i));
-    }
-    ASSERT_TRUE(findRelativePose(first, second, Mat(CAMERA), Mat(CAMERA), R[0], t[0]));
-    ASSERT_TRUE(findRelativePose(pairs1, pairs2, CAMERA, Matx33f(CAMERA), R[1], t[1]));
-    EXPECT_EQ(0, cvtest::norm(R[0], R[1], NORM_INF));
-    EXPECT_EQ(0, cvtest::norm(t[0], t[1], NORM_INF));
-}
-
-//! Ten thousand matches; the same two agree with every proposed model.
-struct HopelessProblem
-{
-    typedef double Model;
-    typedef Vec<double, 1> Step;
-
-    mutable std::atomic<int> trials{0};
-
-    int size() const { return 10000; }
-    int sampleSize() const { return 5; }
-    int parameters() const { return 1; }
-    void propose(const std::vector<int>&, std::vector<double>& models) const
-    {
-        trials++;
-        models = {0};
-    }
-    double loss(double, const Loss&, double) const { return size() - 2; }
-    void squaredErrors(double, std::vector<double>& errors) const
-    {
-        errors.assign(size(), 1e6);
-        errors[0] = errors[1] = 0;
-    }
-    void linearize(double, double, std::vector<Row<Step>>& rows) const { rows.clear(); }
-    double moved(double model, const Step&) const { return model; }
-};
-
-// A sample without wrong matches cannot be expected: 1 - share^5 is 1 in double precision.
-TEST(RelativePose, hopeless_matches_get_the_most_samples)
-{
-    const HopelessProblem problem;
-    const Fit<HopelessProblem> fit = robustFit(problem);
-    EXPECT_EQ(10000, problem.trials);
-    EXPECT_EQ(10000, fit.samples);
-    EXPECT_DOUBLE_EQ(2 / 10000., fit.inlierRatio);
 }
 
 //! A model is a random number seeded by its sample, so the result depends on every sample that was tried.
@@ -168,7 +104,7 @@ struct SenselessProblem
     typedef uint64 Model;
     typedef Vec<double, 1> Step;
 
-    uint64 seed;
+    uint64 seed = 0;
 
     int size() const { return 40; }
     int sampleSize() const { return 3; }
@@ -188,6 +124,34 @@ struct SenselessProblem
     void linearize(Model, double, std::vector<Row<Step>>& rows) const { rows.clear(); }
     Model moved(Model model, const Step&) const { return model; }
 };
+
+//! Ten thousand matches; the same two agree with every proposed model.
+struct HopelessProblem : SenselessProblem
+{
+    mutable std::atomic<int> trials{0};
+
+    int size() const { return 10000; }
+    int sampleSize() const { return 5; }
+    void propose(const std::vector<int>&, std::vector<Model>& models) const
+    {
+        trials++;
+        models = {0};
+    }
+    double loss(Model, const Loss&, double) const { return size() - 2; }
+    void squaredErrors(Model, std::vector<double>& errors) const
+    {
+        errors.assign(size(), 1e6);
+        errors[0] = errors[1] = 0;
+    }
+};
+
+// A sample without wrong matches cannot be expected: 1 - share^5 is 1 in double precision.
+TEST(RelativePose, hopeless_matches_get_the_most_samples)
+{
+    const HopelessProblem problem;
+    EXPECT_EQ(10000, robustFit(problem).samples);
+    EXPECT_EQ(10000, problem.trials);
+}
 
 TEST(RelativePose, does_not_depend_on_the_number_of_threads)
 {
@@ -212,35 +176,43 @@ TEST(RelativePose, one_match_far_away_changes_little)
     RNG random(12);
     const RelativePose truth = randomPose(random, .1);
     Views views(random, truth, 300, 20, .2);
-    Mat R, t, covariance, withFar;
-    ASSERT_TRUE(
-            findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, covariance));
-    views.points1.at<Vec2d>(0) = views.points2.at<Vec2d>(0) = Vec2d(5e4, -2e4);
-    ASSERT_TRUE(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, withFar));
-    EXPECT_LT(cv::norm(stepBetween({R, Vec3d(t)}, truth)), .03);
-    EXPECT_NEAR(1, std::sqrt(cv::trace(withFar)[0] / cv::trace(covariance)[0]), .5);
+    const PoseResult before(views);
+    views.points1[0] = views.points2[0] = Point2d(5e4, -2e4);
+    const PoseResult withFar(views);
+    ASSERT_TRUE(before.found && withFar.found);
+    EXPECT_LT(cv::norm(withFar.error(truth)), .03);
+    EXPECT_NEAR(1, std::sqrt(cv::trace(withFar.covariance) / cv::trace(before.covariance)), .5);
     for (double scale : {1e-200, 1e-3})  // raised to .1
     {
-        ASSERT_TRUE(findRelativePose(
-                views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), scale, covariance));
-        EXPECT_LT(std::sqrt(cv::trace(covariance)[0]), .2);
+        const PoseResult narrow(views, scale);
+        ASSERT_TRUE(narrow.found);
+        EXPECT_LT(std::sqrt(cv::trace(narrow.covariance)), .2);
     }
 }
 
-TEST(RelativePose, takes_columns_of_a_matrix_and_gives_fixed_sizes)
+TEST(RelativePose, takes_both_depths_and_all_layouts_and_gives_fixed_sizes)
 {
     RNG random(10);
     const Views views(random, randomPose(random, .2), 100, 30, .2);
+    const std::vector<Point2f> first(views.points1.begin(), views.points1.end()),
+            second(views.points2.begin(), views.points2.end());
+    const Points one(first.begin(), first.end()), other(second.begin(), second.end());
     Mat both, R, t;
-    hconcat(views.points1, views.points2, both);
-    ASSERT_TRUE(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t));
+    hconcat(Mat(first).reshape(1), Mat(second).reshape(1), both);
+    ASSERT_TRUE(findRelativePose(first, second, Mat(CAMERA), Matx33f(CAMERA), R, t));
+    EXPECT_EQ(CV_64F, R.type());
+    EXPECT_EQ(Size(1, 3), t.size());
     Matx33d fixedR;
     Vec3d fixedT;
     Matx<double, 5, 5> covariance;
     ASSERT_TRUE(findRelativePose(both.colRange(0, 2), both.colRange(2, 4), CAMERA, CAMERA, fixedR, fixedT,
             noArray(), 0, covariance));
-    EXPECT_EQ(0, cvtest::norm(R, Mat(fixedR), NORM_INF));
-    EXPECT_EQ(0, cvtest::norm(t, Mat(fixedT), NORM_INF));
+    const PoseResult again(one, other);
+    for (const RelativePose& same : {again.pose, RelativePose{fixedR, fixedT}})
+    {
+        EXPECT_EQ(Matx33d(R), same.R);
+        EXPECT_EQ(Vec3d(t), same.t);
+    }
     ASSERT_FALSE(findRelativePose(both(Rect(0, 0, 2, 4)), both(Rect(2, 0, 2, 4)), CAMERA, CAMERA, fixedR,
             fixedT, noArray(), 0, covariance));
     EXPECT_TRUE(std::isnan(fixedR(0, 0)) && std::isnan(fixedT[2]) && std::isnan(covariance(4, 4)));
@@ -263,23 +235,17 @@ TEST(RelativePose, too_few_matches_are_no_pose)
 TEST(RelativePose, degenerate_matches_give_a_reason_or_a_large_deviation)
 {
     const Mat one(50, 2, CV_32F, Scalar(100));
-    Mat line(50, 2, CV_32F), R, t, covariance;
+    Mat line(50, 2, CV_32F);
     for (int i = 0; i < 50; i++)
         line.at<Point2f>(i) = Point2f(10.f * i, 5.f * i);
-    String reason;
-    EXPECT_FALSE(findRelativePose(one, one, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), .25, covariance,
-            &reason));  // all points are the same
-    EXPECT_FALSE(reason.empty());
+    const PoseResult same(one, one, .25), still(line, line, .25);
+    EXPECT_FALSE(same.found || same.reason.empty()) << "all points are the same";
+    EXPECT_EQ(still.found, still.reason.empty());
     // The camera did not move and the points are on a line: rotation about the line and t are undetermined.
-    if (findRelativePose(line, line, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), .25, covariance, &reason))
-    {
-        Mat values;
-        ASSERT_TRUE(checkRange(R) && checkRange(t) && checkRange(covariance));
-        eigen(covariance, values);
-        EXPECT_GT(values.at<double>(1), 1);
-    }
-    else
-        EXPECT_FALSE(reason.empty());
+    Vec<double, 5> values = Vec<double, 5>::all(2);
+    if (still.found)
+        eigen(still.covariance, values);
+    EXPECT_GT(values[1], 1);
 }
 
 // Also for large rotations and large angles between directions.
@@ -298,12 +264,12 @@ TEST(RelativePose, steps_lead_to_other_poses)
 TEST(RelativePose, poses_of_a_plane_have_rotations_for_any_camera)
 {
     const Matx33d camera(.001, 0, 320, 0, 500, 240, 0, 0, 1);
-    Mat first(12, 2, CV_64F), second(12, 2, CV_64F);
+    Points first, second;
     RNG random(3);
     for (int i = 0; i < 12; i++)  // on a line
     {
-        first.at<Point2d>(i) = Point2d(100 + 35 * i, 277 + 6 * i);
-        second.at<Point2d>(i) = first.at<Point2d>(i) + Point2d(random.gaussian(.3), random.gaussian(.3));
+        first.emplace_back(100 + 35 * i, 277 + 6 * i);
+        second.push_back(first.back() + Point2d(random.gaussian(.3), random.gaussian(.3)));
     }
     const EpipolarProblem problem(first, second, camera, camera);
     int count = 0;
@@ -329,18 +295,17 @@ TEST(RelativePose, invalid_arguments_are_refused)
     broken.at<float>(3, 1) = std::numeric_limits<float>::quiet_NaN();
     skewed.at<double>(0, 1) = 1;
     flat.at<double>(1, 1) = 0;
-    EXPECT_THROW(findRelativePose(points, points.rowRange(1, 10), camera, camera, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(Mat(10, 3, CV_32F), points, camera, camera, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(Mat(10, 2, CV_32S), points, camera, camera, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(points, broken, camera, camera, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(points, Mat(10, 2, CV_64F, Scalar(DBL_MAX)), camera, camera, R, t),
-            cv::Exception);
-    EXPECT_THROW(
-            findRelativePose(points, Mat(10, 2, CV_64F, Scalar(1e10)), camera, camera, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(points, points, skewed, camera, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(points, points, camera, flat, R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(points, points, camera, Mat(), R, t), cv::Exception);
-    EXPECT_THROW(findRelativePose(points, points, Mat(3, 3, CV_32S), camera, R, t), cv::Exception);
+    for (const Mat& wrong : {Mat(points.rowRange(1, 10)), Mat(10, 3, CV_32F), Mat(10, 2, CV_32S), broken,
+                 Mat(10, 2, CV_64F, Scalar(DBL_MAX)), Mat(10, 2, CV_64F, Scalar(1e10))})
+    {
+        EXPECT_THROW(findRelativePose(points, wrong, camera, camera, R, t), cv::Exception) << wrong;
+        EXPECT_THROW(findRelativePose(wrong, points, camera, camera, R, t), cv::Exception) << wrong;
+    }
+    for (const Mat& wrong : {skewed, flat, Mat(), Mat(3, 3, CV_32S)})
+    {
+        EXPECT_THROW(findRelativePose(points, points, wrong, camera, R, t), cv::Exception) << wrong;
+        EXPECT_THROW(findRelativePose(points, points, camera, wrong, R, t), cv::Exception) << wrong;
+    }
     for (double scale :
             {-1., std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
         EXPECT_THROW(findRelativePose(points, points, camera, camera, R, t, noArray(), scale), cv::Exception);

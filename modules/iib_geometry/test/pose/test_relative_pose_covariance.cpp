@@ -21,14 +21,9 @@ struct Coverage
         for (int trial = 0; trial < trials; trial++)
         {
             const RelativePose truth = randomPose(random, .2);
-            const Views views = viewsOf(truth);
-            RelativePose pose;
-            Matx<double, 5, 5> covariance;
-            if (!findRelativePose(views.points1, views.points2, CAMERA, CAMERA, pose.R, pose.t, noArray(),
-                        scale, covariance))
-                continue;
-            const Vec<double, 5> error = stepBetween(pose, truth);
-            squared.push_back(error.dot(covariance.inv() * error));
+            const PoseResult result(viewsOf(truth), scale);
+            if (result.found)
+                squared.push_back(result.squared(truth));
         }
     }
 
@@ -80,11 +75,11 @@ TEST(RelativePose, covariance_predicts_errors_that_neighbours_share)
         Vec2d shifts[12];
         for (Vec2d& shift : shifts)
             random.fill(shift, RNG::NORMAL, 0, .2);
-        for (int i = 0; i < views.points1.rows; i++)
+        for (size_t i = 0; i < views.points1.size(); i++)
         {
-            const Vec2d at = views.points1.at<Vec2d>(i);
-            const int part = std::clamp(int(at[0] / 160), 0, 3) + 4 * std::clamp(int(at[1] / 160), 0, 2);
-            views.points2.at<Vec2d>(i) += shifts[part];
+            const Point2d at = views.points1[i];
+            const int part = std::clamp(int(at.x / 160), 0, 3) + 4 * std::clamp(int(at.y / 160), 0, 2);
+            views.points2[i] += Point2d(shifts[part]);
         }
         return views;
     });

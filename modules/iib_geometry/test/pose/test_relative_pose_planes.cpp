@@ -25,17 +25,11 @@ TEST(RelativePose, points_in_front_determine_the_sign_of_t)
             for (int trial = 0; trial < trials; trial++)
             {
                 const RelativePose truth = randomPose(random, .1);
-                const Views views(random, truth, 200, wrong, noise, .005);
-                RelativePose pose;
-                Mat covariance;
-                if (!findRelativePose(views.points1, views.points2, CAMERA, CAMERA, pose.R, pose.t, noArray(),
-                            0, covariance))
-                    continue;
-                found++;
-                if (cv::trace(covariance(Rect(3, 3, 2, 2)))[0] > .25)
-                    continue;
-                certain++;
-                behind += pose.t.dot(truth.t) < 0;
+                const PoseResult result(Views(random, truth, 200, wrong, noise, .005));
+                const bool isCertain = result.found && cv::trace(result.ofDirection()) <= .25;
+                found += result.found;
+                certain += isCertain;
+                behind += isCertain && result.pose.t.dot(truth.t) < 0;
             }
             EXPECT_EQ(trials, found) << noise << ' ' << wrong;
             EXPECT_EQ(0, behind) << noise << ' ' << wrong;
@@ -50,12 +44,10 @@ TEST(RelativePose, matches_of_a_rotated_camera_are_inliers)
     for (double noise : {.1, 1., 3.})
         for (int trial = 0; trial < 5; trial++)
         {
-            const Views views(random, randomPose(random, .1), 200, 0, noise, 0);
-            Mat R, t, inliers, covariance;
-            ASSERT_TRUE(findRelativePose(
-                    views.points1, views.points2, CAMERA, CAMERA, R, t, inliers, 0, covariance));
-            EXPECT_GE(countNonZero(inliers), 170) << noise;
-            EXPECT_GT(cv::trace(covariance(Rect(3, 3, 2, 2)))[0], 1) << noise;
+            const PoseResult result(Views(random, randomPose(random, .1), 200, 0, noise, 0));
+            ASSERT_TRUE(result.found) << result.reason;
+            EXPECT_GE(countNonZero(result.inliers), 170) << noise;
+            EXPECT_GT(cv::trace(result.ofDirection()), 1) << noise;
         }
 }
 
@@ -66,61 +58,45 @@ TEST(RelativePose, undetermined_parameters_have_a_large_deviation)
     for (int kind = 0; kind < 4; kind++)
     {
         RNG random(20 + kind);
+        int found = 0;
         for (int trial = 0; trial < 10; trial++)
         {
             const RelativePose truth =
                     kind == 3 ? RelativePose{Matx33d::eye(), Vec3d(1, 0, 0)} : randomPose(random, .1);
-            Mat first(200, 2, CV_64F), second(200, 2, CV_64F);
+            Points first(200), second(200);
             for (int i = 0; i < 200; i++)
             {
                 const double baselines[] = {1e-6, 1e-3, 1, 0};
-                double *const seen = first.ptr<double>(i), *const seenAgain = second.ptr<double>(i);
-                see(random, truth, kind == 2 ? onLine(random) : anyPoint(random), kind == 3 ? 0 : .2, seen,
-                        seenAgain, baselines[kind]);
+                see(random, truth, kind == 2 ? onLine(random) : anyPoint(random), kind == 3 ? 0 : .2,
+                        first[i], second[i], baselines[kind]);
                 if (kind == 3 && i < 60)
-                    std::copy_n(anyPixel(random).val, 2, seenAgain);
+                    second[i] = anywhere(random, 1, 640, 480)[0];
             }
-            Mat R, t, inliers, covariance;
-            String reason;
-            if (!findRelativePose(first, second, CAMERA, CAMERA, R, t, inliers, 0, covariance, &reason))
+            const PoseResult result(first, second);
+            if (!result.found)
             {
-                EXPECT_EQ(2, kind) << reason;  // points on a line are also on a plane
-                EXPECT_NE(reason.find("two poses"), String::npos) << reason;
+                EXPECT_EQ(2, kind) << result.reason;  // points on a line are also on a plane
+                EXPECT_NE(result.reason.find("two poses"), String::npos) << result.reason;
                 continue;
             }
-            EXPECT_GE(countNonZero(inliers), 130) << cases[kind];
+            found++;
+            EXPECT_GE(countNonZero(result.inliers), 130) << cases[kind];
             Vec2d values;
-            eigen(Matx22d(covariance(Rect(3, 3, 2, 2))), values);
+            eigen(result.ofDirection(), values);
             EXPECT_GT(std::sqrt(values[0]), 1) << cases[kind];
+            Vec<double, 5> all;
+            eigen(result.covariance, all);
+            EXPECT_GT(all[4], 0) << "has an inverse";
         }
+        EXPECT_GE(found, 1) << cases[kind];
     }
-}
-
-TEST(RelativePose, covariances_have_an_inverse)
-{
-    RNG random(21);
-    int found = 0;
-    for (int trial = 0; trial < 10; trial++)
-    {
-        const RelativePose truth = randomPose(random, .1);
-        Mat first(200, 2, CV_64F), second(200, 2, CV_64F), R, t, covariance, values;
-        for (int i = 0; i < first.rows; i++)
-            see(random, truth, onLine(random), .2, first.ptr<double>(i), second.ptr<double>(i));
-        if (!findRelativePose(first, second, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), 0, covariance))
-            continue;
-        found++;
-        eigen(covariance, values);
-        EXPECT_GT(values.at<double>(4), 0);
-        EXPECT_GT(values.at<double>(0), 1) << "an undetermined rotation";
-    }
-    EXPECT_GE(found, 1);
 }
 
 //! Counts the results for points on a plane or near it.
 struct OfPlane
 {
-    int right = 0, wrong = 0, beyond = 0,
-        refused = 0;  //!< beyond: errors of five standard deviations or more
+    int right = 0, wrong = 0, refused = 0;
+    int beyond = 0;  //!< errors of five standard deviations or more
 
     /** @param relief largest distance of points from the plane, as a share of their depth
     @param wrongMatches number of matches with random points */
@@ -130,29 +106,23 @@ struct OfPlane
         {
             RNG random(100 + trial);
             const RelativePose truth = randomPose(random, .1);
-            Mat first(count, 2, CV_64F), second(count, 2, CV_64F), covariance;
+            Points first(count), second(count);
             for (int i = 0; i < count; i++)
             {
                 const Vec3d ray = CAMERA.inv() * anyPixel(random);
                 const double aside = relief > 0 ? random.uniform(-relief, relief) : 0;
                 const Vec3d X = ray * (8 * (1 + aside) / (1 + .2 * ray[0] + .1 * ray[1]));
-                see(random, truth, X, noise, first.ptr<double>(i), second.ptr<double>(i));
+                see(random, truth, X, noise, first[i], second[i]);
             }
-            for (Mat* points : {&first, &second})
-                if (wrongMatches > 0)
-                    anywhere(random, wrongMatches, 640, 480).copyTo(points->rowRange(0, wrongMatches));
-            RelativePose pose;
-            String reason;
-            if (!findRelativePose(
-                        first, second, CAMERA, CAMERA, pose.R, pose.t, noArray(), 0, covariance, &reason))
+            for (Points* points : {&first, &second})
             {
-                refused++;
-                EXPECT_NE(reason.find("plane"), String::npos) << reason;
-                continue;
+                const Points wrong = anywhere(random, wrongMatches, 640, 480);
+                std::copy(wrong.begin(), wrong.end(), points->begin());
             }
-            const Vec<double, 5> error = stepBetween(pose, truth);
-            (cv::norm(error) < .1 ? right : wrong)++;
-            beyond += error.dot(Matx<double, 5, 5>(covariance).inv() * error) > 25;
+            const PoseResult result(first, second);
+            (!result.found ? refused : cv::norm(result.error(truth)) < .1 ? right : wrong)++;
+            beyond += result.found && result.squared(truth) > 25;
+            EXPECT_TRUE(result.found || result.reason.find("plane") != String::npos) << result.reason;
         }
     }
 };

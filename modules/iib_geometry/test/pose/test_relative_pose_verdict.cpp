@@ -2,39 +2,18 @@
 
 #include "pose/pose_fit.hpp"
 #include "two_cameras.hpp"
-#include "verdict/pose_verdict.hpp"
+#include "verdict/pose_tests.hpp"
 
 // Which poses are accepted, and their estimated errors.
 namespace opencv_test { namespace {
 using namespace cv::iib;
 
-struct PoseResult
-{
-    bool found;
-    RelativePose pose;
-    Matx<double, 5, 5> covariance;
-    String reason;
-
-    explicit PoseResult(const Views& views)
-    {
-        found = findRelativePose(views.points1, views.points2, CAMERA, CAMERA, pose.R, pose.t, noArray(), 0,
-                covariance, &reason);
-    }
-
-    //! Whether the true direction of t is inside the region of 95 %.
-    bool hasDirection(const RelativePose& truth) const
-    {
-        const Vec2d off(stepBetween(pose, truth).val + 3);
-        return off.dot(covariance.get_minor<2, 2>(3, 3).inv() * off) < 5.99;
-    }
-};
-
 RelativePose along(RNG& random, const Vec3d& t) { return {randomPose(random, .1).R, normalize(t)}; }
 
 void append(Views& views, const Point2d& first, const Point2d& second)
 {
-    views.points1.push_back(Mat(Matx12d(first.x, first.y)));
-    views.points2.push_back(Mat(Matx12d(second.x, second.y)));
+    views.points1.push_back(first);
+    views.points2.push_back(second);
 }
 
 //! The camera moves forward by .1, points are 4 to 12 away. Noise near the epipole must not hide the direction of t.
@@ -42,7 +21,7 @@ TEST(RelativePose, a_short_move_forward_has_a_direction_and_a_rotation_has_none)
 {
     const auto deviation = [](const PoseResult& result) {
         EXPECT_TRUE(result.found) << result.reason;
-        return std::sqrt(result.covariance(3, 3) + result.covariance(4, 4));
+        return std::sqrt(cv::trace(result.ofDirection()));
     };
     RNG random(63);
     int moves = 0, turns = 0;
@@ -102,7 +81,7 @@ TEST(RelativePose, more_right_matches_never_lose_the_pose)
                 const Vec3d pixel =
                         centre + scene.beside * Vec3d(random.uniform(-1., 1.), random.uniform(-1., 1.), 0);
                 Point2d first, second;
-                see(random, truth, depth * (CAMERA.inv() * pixel), 0, &first.x, &second.x);
+                see(random, truth, depth * (CAMERA.inv() * pixel), 0, first, second);
                 append(views, first, second);
             }
             const PoseResult result(views);
@@ -221,7 +200,7 @@ TEST(RelativePose, is_found_by_few_right_matches_within_half_a_pixel)
         const RelativePose truth = randomPose(random, .2);
         const Views views(random, truth, 350, 301, .25);
         const PoseResult result(views);
-        right += result.found && cv::norm(stepBetween(result.pose, truth)) < .05;
+        right += result.found && cv::norm(result.error(truth)) < .05;
         const EpipolarProblem problem(views.points1, views.points2, CAMERA, CAMERA);
         quick += fitPose(problem, Verdict(views.points1, views.points2), 0, {}).samples < 5000;
     }
@@ -234,17 +213,15 @@ TEST(RelativePose, takes_covariances_of_matches)
     RNG random(70);
     const RelativePose truth = randomPose(random, .2);
     const Views views(random, truth, 100, 30, .2);
-    Mat R, t;
-    const Mat covariances(100, 3, CV_32F, Scalar(.04));
-    ASSERT_TRUE(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, noArray(),
-            nullptr, covariances));
-    EXPECT_LT(cv::norm(stepBetween({R, Vec3d(t)}, truth)), .03);
-    EXPECT_THROW(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, noArray(),
-                         nullptr, covariances.rowRange(1, 100)),
-            cv::Exception);
-    EXPECT_THROW(findRelativePose(views.points1, views.points2, CAMERA, CAMERA, R, t, noArray(), 0, noArray(),
-                         nullptr, Mat(100, 3, CV_32S, Scalar(1))),
-            cv::Exception);
+    RelativePose pose;
+    const auto find = [&](const Mat& covariances) {
+        return findRelativePose(views.points1, views.points2, CAMERA, CAMERA, pose.R, pose.t, noArray(), 0,
+                noArray(), nullptr, covariances);
+    };
+    ASSERT_TRUE(find(Mat(100, 3, CV_32F, Scalar(.04))));
+    EXPECT_LT(cv::norm(stepBetween(pose, truth)), .03);
+    EXPECT_THROW(find(Mat(99, 3, CV_32F, Scalar(.04))), cv::Exception);
+    EXPECT_THROW(find(Mat(100, 3, CV_32S, Scalar(1))), cv::Exception);
 }
 
 }}  // namespace opencv_test

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pose/two_views.hpp"
 #include "../test_precomp.hpp"
+#include "common/points.hpp"
+#include "pose/two_views.hpp"
 
 namespace opencv_test {
 
+using cv::iib::Points;
 using cv::iib::RelativePose;
 
 const Matx33d CAMERA(500, 0, 320, 0, 510, 240, 0, 0, 1);
@@ -34,15 +36,14 @@ inline Vec3d anyPoint(RNG& random)
 }
 
 //! Projects a point to both images. @param noise standard deviation, pixels
-inline void see(RNG& random, const RelativePose& pose, const Vec3d& X, double noise, double* first,
-        double* second, double baseline = 1)
+inline void see(RNG& random, const RelativePose& pose, const Vec3d& X, double noise, Point2d& first,
+        Point2d& second, double baseline = 1)
 {
     const Vec3d a = CAMERA * X, b = CAMERA * (pose.R * X + baseline * pose.t);
-    for (int c = 0; c < 2; c++)
-    {
-        first[c] = a[c] / a[2] + random.gaussian(noise);
-        second[c] = b[c] / b[2] + random.gaussian(noise);
-    }
+    first.x = a[0] / a[2] + random.gaussian(noise);
+    second.x = b[0] / b[2] + random.gaussian(noise);
+    first.y = a[1] / a[2] + random.gaussian(noise);
+    second.y = b[1] / b[2] + random.gaussian(noise);
 }
 
 /** Pixels of points in front of both cameras, at depths of 4 to 12 in camera 1.
@@ -50,9 +51,8 @@ inline void see(RNG& random, const RelativePose& pose, const Vec3d& X, double no
 struct Views
 {
     Views(RNG& random, const RelativePose& pose, int count, int wrong, double noise, double baseline = 1)
-        : points1(count, 2, CV_64F), points2(count, 2, CV_64F)
     {
-        for (int i = 0; i < count;)
+        while ((int)points1.size() < count)
         {
             const double depth = random.uniform(4., 12.);
             const Vec3d pixel = anyPixel(random);
@@ -60,25 +60,63 @@ struct Views
                         seen = CAMERA * Y;
             if (Y[2] < 1)
                 continue;
-            const bool isWrong = i < wrong;
+            const bool isWrong = (int)points1.size() < wrong;
+            Vec2d one, other;
             for (int k = 0; k < 2; k++)
             {
-                points1.at<double>(i, k) = pixel[k] + random.gaussian(noise);
-                points2.at<double>(i, k) =
-                        isWrong ? random.uniform(0., 480.) : seen[k] / seen[2] + random.gaussian(noise);
+                one[k] = pixel[k] + random.gaussian(noise);
+                other[k] = isWrong ? random.uniform(0., 480.) : seen[k] / seen[2] + random.gaussian(noise);
             }
-            i++;
+            points1.push_back(one);
+            points2.push_back(other);
         }
     }
-    Mat points1, points2;
+    Points points1, points2;
 };
 
-//! Random points of an image, N x 2, CV_64F.
-inline Mat anywhere(RNG& random, int count, double width, double height)
+//! The result of findRelativePose with CAMERA twice.
+struct PoseResult
 {
-    Mat points(count, 2, CV_64F);
-    random.fill(points.col(0), RNG::UNIFORM, 0, width);
-    random.fill(points.col(1), RNG::UNIFORM, 0, height);
+    RelativePose pose;
+    Matx<double, 5, 5> covariance;
+    Mat inliers;
+    String reason;
+    bool found;
+
+    PoseResult(InputArray points1, InputArray points2, double scale = 0, const Matx33d& camera1 = CAMERA,
+            const Matx33d& camera2 = CAMERA)
+        : found(cv::iib::findRelativePose(
+                  points1, points2, camera1, camera2, pose.R, pose.t, inliers, scale, covariance, &reason))
+    {
+    }
+    explicit PoseResult(const Views& views, double scale = 0)
+        : PoseResult(views.points1, views.points2, scale)
+    {
+    }
+
+    //! The step from the pose to the true one.
+    Vec<double, 5> error(const RelativePose& truth) const { return stepBetween(pose, truth); }
+    //! The error's squared Mahalanobis length.
+    double squared(const RelativePose& truth) const
+    {
+        return error(truth).dot(covariance.inv() * error(truth));
+    }
+    Matx22d ofDirection() const { return covariance.get_minor<2, 2>(3, 3); }
+    //! Whether the true direction of t is inside the region of 95 %.
+    bool hasDirection(const RelativePose& truth) const
+    {
+        const Vec2d off(error(truth).val + 3);
+        return off.dot(ofDirection().inv() * off) < 5.99;
+    }
+};
+
+//! Random points of an image.
+inline Points anywhere(RNG& random, int count, double width, double height)
+{
+    Points points(count);
+    for (double Point2d::*axis : {&Point2d::x, &Point2d::y})
+        for (Point2d& point : points)
+            point.*axis = random.uniform(0., axis == &Point2d::x ? width : height);
     return points;
 }
 

@@ -21,13 +21,13 @@ TEST(Verdict, false_alarms_are_few_of_right_matches_and_many_of_wrong_ones)
     none.rowRange(4, 8) = 0;
     EXPECT_TRUE(cvIsInf(logFalseAlarms(wrong.points1, wrong.points2, none, false, 1)));
     // Thirty matches in one place count as one.
-    Mat beside = right.points1.clone();
-    beside.rowRange(0, 30) = 100;
+    Points beside = right.points1;
+    std::fill(beside.begin(), beside.begin() + 30, Point2d(100, 100));
     EXPECT_TRUE(cvIsInf(logFalseAlarms(beside, right.points2, some, true, 1)));
     EXPECT_THROW(logFalseAlarms(beside, right.points2, Mat(59, 1, CV_8U), true, 1), cv::Exception);
     EXPECT_THROW(logFalseAlarms(beside, right.points2, Mat(60, 1, CV_32S), true, 1), cv::Exception);
     EXPECT_THROW(logFalseAlarms(beside, right.points2, some, true, 0), cv::Exception);
-    EXPECT_THROW(logFalseAlarms(beside.rowRange(1, 60), right.points2, some, true, 1), cv::Exception);
+    EXPECT_THROW(logFalseAlarms(Points(59), right.points2, some, true, 1), cv::Exception);
 }
 
 TEST(Verdict, random_matches_have_no_pose)
@@ -36,30 +36,24 @@ TEST(Verdict, random_matches_have_no_pose)
     for (int count : {5, 6, 10, 20, 50, 100, 300})
         for (int trial = 0; trial < (count < 100 ? 6 : 2); trial++)
         {
-            const Views views(random, randomPose(random, .2), count, count, 0);
-            Mat R, t, inliers, covariance;
-            String reason;
-            EXPECT_FALSE(findRelativePose(views.points1, views.points2, Mat(CAMERA), Mat(CAMERA), R, t,
-                    inliers, 0, covariance, &reason))
-                    << count;
-            EXPECT_TRUE(R.empty() && t.empty() && covariance.empty());
-            EXPECT_FALSE(reason.empty());
-            EXPECT_EQ(count, inliers.rows);
+            const PoseResult result(Views(random, randomPose(random, .2), count, count, 0));
+            EXPECT_FALSE(result.found) << count;
+            EXPECT_FALSE(result.reason.empty());
+            EXPECT_EQ(count, result.inliers.rows);
         }
 }
 
 //! Projects to camera 2 the points at camera 1's pixels, at depths of 4 to 12 lengths of t. @param noise pixels
-Mat seenAgain(RNG& random, const Mat& pixels, const Matx33d& K1, const Matx33d& K2, const RelativePose& pose,
-        double noise)
+Points seenAgain(RNG& random, const Points& pixels, const Matx33d& K1, const Matx33d& K2,
+        const RelativePose& pose, double noise)
 {
-    Mat seen(pixels.size(), CV_64F);
-    for (int i = 0; i < pixels.rows; i++)
+    Points seen;
+    for (const Point2d& p : pixels)
     {
-        const double* p = pixels.ptr<double>(i);
-        const Vec3d X = random.uniform(4., 12.) * (K1.inv() * Vec3d(p[0], p[1], 1)),
+        const Vec3d X = random.uniform(4., 12.) * (K1.inv() * Vec3d(p.x, p.y, 1)),
                     b = K2 * (pose.R * X + pose.t);
-        for (int c = 0; c < 2; c++)
-            seen.at<double>(i, c) = b[c] / b[2] + random.gaussian(noise);
+        const double x = b[0] / b[2] + random.gaussian(noise);
+        seen.emplace_back(x, b[1] / b[2] + random.gaussian(noise));
     }
     return seen;
 }
@@ -70,33 +64,32 @@ TEST(Verdict, right_matches_of_a_skyline_a_small_image_and_a_wide_scale_have_a_p
     const Matx33d small(80, 0, 40, 0, 80, 30, 0, 0, 1), large(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
     const RelativePose pose = cv::iib::moved({Matx33d::eye(), Vec3d(.6, .8, 0)}, {.02, .03, .01, 0, 0});
     RNG random(17);
-    Mat R, t;
     for (int count : {20, 50, 100, 400})
     {
-        const Mat a = anywhere(random, count, 640, 480);
-        EXPECT_TRUE(findRelativePose(a, seenAgain(random, a, CAMERA, CAMERA, pose, .2), CAMERA, CAMERA, R, t))
-                << count;
+        const Points a = anywhere(random, count, 640, 480);
+        EXPECT_TRUE(PoseResult(a, seenAgain(random, a, CAMERA, CAMERA, pose, .2)).found) << count;
     }
     for (int count : {100, 400})
         for (double height : {2., 5.})
         {
-            Mat a = anywhere(random, count, 640, 480);
+            Points a = anywhere(random, count, 640, 480);
             for (int i = 0; i < count * 4 / 5; i++)
-                a.at<double>(i, 1) = 240 + random.gaussian(height);
-            const Mat b = seenAgain(random, a, CAMERA, CAMERA, pose, .2), agree(count, 1, CV_8U, Scalar(1));
-            EXPECT_TRUE(findRelativePose(a, b, CAMERA, CAMERA, R, t)) << count << ' ' << height;
+                a[i].y = 240 + random.gaussian(height);
+            const Points b = seenAgain(random, a, CAMERA, CAMERA, pose, .2);
+            const Mat agree(count, 1, CV_8U, Scalar(1));
+            EXPECT_TRUE(PoseResult(a, b).found) << count << ' ' << height;
             EXPECT_LT(logFalseAlarms(a, b, agree, true, 1.5), -3) << count << ' ' << height;
         }
     for (int count : {200, 400})
     {
-        const Mat a = anywhere(random, count, 80, 60), b = seenAgain(random, a, small, large, pose, .2);
-        EXPECT_TRUE(findRelativePose(a, b, small, large, R, t)) << count;
-        EXPECT_TRUE(findRelativePose(b, a, large, small, R, t)) << count;
+        const Points a = anywhere(random, count, 80, 60), b = seenAgain(random, a, small, large, pose, .2);
+        EXPECT_TRUE(PoseResult(a, b, 0, small, large).found) << count;
+        EXPECT_TRUE(PoseResult(b, a, 0, large, small).found) << count;
     }
     for (double scale : {5., 20., 30.})
     {
-        const Mat a = anywhere(random, 300, 640, 480), b = seenAgain(random, a, CAMERA, CAMERA, pose, 3);
-        EXPECT_TRUE(findRelativePose(a, b, CAMERA, CAMERA, R, t, noArray(), scale)) << scale;
+        const Points a = anywhere(random, 300, 640, 480), b = seenAgain(random, a, CAMERA, CAMERA, pose, 3);
+        EXPECT_TRUE(PoseResult(a, b, scale).found) << scale;
     }
 }
 
@@ -107,19 +100,19 @@ TEST(Verdict, wrong_matches_of_a_skyline_or_a_strip_have_no_pose)
     for (int count : {100, 400})
         for (double height : {2., 5.})
         {
-            Mat points[2];
-            for (Mat& image : points)
+            Points points[2];
+            for (Points& image : points)
             {
                 image = anywhere(random, count, 640, 480);
                 for (int i = 0; i < count * 4 / 5; i++)
-                    image.at<double>(i, 1) = 240 + random.gaussian(height);
+                    image[i].y = 240 + random.gaussian(height);
             }
-            Mat R, t, agree(count, 1, CV_8U, Scalar(1));
-            EXPECT_FALSE(findRelativePose(points[0], points[1], Mat(CAMERA), Mat(CAMERA), R, t)) << count;
+            Mat agree(count, 1, CV_8U, Scalar(1));
+            EXPECT_FALSE(PoseResult(points[0], points[1]).found) << count;
             Mat F = findFundamentalMat(points[0], points[1], USAC_MAGSAC, 1.5, .9999, 10000, agree);
             EXPECT_GT(logFalseAlarms(points[0], points[1], agree, true, 1.5), -3) << count;
-            const Mat a = anywhere(random, count, 640, 8), b = anywhere(random, count, 640, 8);
-            EXPECT_FALSE(findRelativePose(a, b, Mat(CAMERA), Mat(CAMERA), R, t)) << count;
+            const Points a = anywhere(random, count, 640, 8), b = anywhere(random, count, 640, 8);
+            EXPECT_FALSE(PoseResult(a, b).found) << count;
         }
 }
 
@@ -130,12 +123,11 @@ TEST(Verdict, wrong_matches_of_a_small_image_and_a_large_one_have_no_pose)
     const Matx33d small(80, 0, 40, 0, 80, 30, 0, 0, 1), large(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
     for (int count : {200, 400})
     {
-        const Mat a = anywhere(random, count, 80, 60), b = anywhere(random, count, 4000, 3000);
-        Mat R, t;
-        EXPECT_FALSE(findRelativePose(a, b, Mat(small), Mat(large), R, t)) << count;
-        EXPECT_FALSE(findRelativePose(b, a, Mat(large), Mat(small), R, t)) << count;
+        const Points a = anywhere(random, count, 80, 60), b = anywhere(random, count, 4000, 3000);
+        EXPECT_FALSE(PoseResult(a, b, 0, small, large).found) << count;
+        EXPECT_FALSE(PoseResult(b, a, 0, large, small).found) << count;
     }
-    const Mat second = anywhere(random, 300, 640, 480), first = anywhere(random, 300, 640, 480);
+    const Points second = anywhere(random, 300, 640, 480), first = anywhere(random, 300, 640, 480);
     EXPECT_GT(logFalseAlarms(first, second, Mat::ones(300, 1, CV_8U), true, 1e4), 0);
 }
 
@@ -145,17 +137,16 @@ TEST(Verdict, wrong_matches_have_no_pose_at_wide_scales)
     for (double scale : {5., 20., 30., 200.})
         for (int count : {30, 300})
         {
-            const Mat a = anywhere(random, count, 640, 480), b = anywhere(random, count, 640, 480);
-            Mat R, t;
-            EXPECT_FALSE(findRelativePose(a, b, Mat(CAMERA), Mat(CAMERA), R, t, noArray(), scale)) << scale;
+            const Points a = anywhere(random, count, 640, 480), b = anywhere(random, count, 640, 480);
+            EXPECT_FALSE(PoseResult(a, b, scale).found) << scale;
         }
 }
 
 TEST(Verdict, the_span_of_points_excludes_the_outermost)
 {
-    Mat points(100, 2, CV_64F);
-    for (int i = 0; i < points.rows; i++)
-        points.at<Point2d>(i) = Point2d(i, i == 50 ? 1e6 : i);
+    Points points;
+    for (int i = 0; i < 100; i++)
+        points.emplace_back(i, i == 50 ? 1e6 : i);
     EXPECT_LT(spanOf(points).height, 100);
     EXPECT_GT(spanOf(points).width, 90);
 }
@@ -164,7 +155,7 @@ TEST(Verdict, the_span_of_points_excludes_the_outermost)
 TEST(Verdict, limits_that_are_tried_count)
 {
     RNG random(21);
-    const Mat a = anywhere(random, 60, 640, 480), b = anywhere(random, 60, 640, 480);
+    const Points a = anywhere(random, 60, 640, 480), b = anywhere(random, 60, 640, 480);
     const Verdict verdict(a, b);
     const std::vector<double> squared(60, .01), wrong(1000, 1e4);
     double best = 0;
@@ -191,12 +182,12 @@ TEST(Verdict, a_place_of_many_matches_agrees_with_a_higher_chance)
     RNG random(20);
     const int wrong = 6000, right = 3000;
     const double chance = .05;
-    Mat points[2];
+    Points points[2];
     Verdict::Marks all(wrong + right, true), agreeing(wrong + right);
-    for (Mat& image : points)
+    for (Points& image : points)
     {
-        image = anywhere(random, wrong + right, 640, 480);
-        image.rowRange(wrong, wrong + right) = 100;
+        image = anywhere(random, wrong, 640, 480);
+        image.resize(wrong + right, Point2d(100, 100));
     }
     for (int i = 0; i < wrong + right; i++)
         agreeing[i] = i >= wrong || random.uniform(0., 1.) < chance;

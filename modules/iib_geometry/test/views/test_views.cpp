@@ -25,20 +25,15 @@ struct Change
     {
         const Matx33d shape =
                 turned(degrees) * turned(-25) * Matx33d::diag({scale / tilt, scale, 1}) * turned(25);
-        std::vector<Point2d> at;
+        Mat at, low, high;
         perspectiveTransform(std::vector<Point2d>{{0, 0}, {size.width - 1., 0}, {0, size.height - 1.},
                                      {size.width - 1., size.height - 1.}},
                 at, shape);
-        double low[2] = {at[0].x, at[0].y}, high[2] = {at[0].x, at[0].y};
-        for (const Point2d& p : at)
-        {
-            low[0] = std::min(low[0], p.x);
-            low[1] = std::min(low[1], p.y);
-            high[0] = std::max(high[0], p.x);
-            high[1] = std::max(high[1], p.y);
-        }
-        canvas = Size(cvCeil(high[0] - low[0]) + 1, cvCeil(high[1] - low[1]) + 1);
-        return Matx33d(1, 0, -low[0], 0, 1, -low[1], 0, 0, 1) * shape;
+        reduce(at.reshape(1, 4), low, 0, REDUCE_MIN);
+        reduce(at.reshape(1, 4), high, 0, REDUCE_MAX);
+        const Vec2d from = low.at<Vec2d>(0), span = high.at<Vec2d>(0) - from;
+        canvas = Size(cvCeil(span[0]) + 1, cvCeil(span[1]) + 1);
+        return Matx33d(1, 0, -from[0], 0, 1, -from[1], 0, 0, 1) * shape;
     }
 
     Mat of(const Mat& image, Matx33d& truth) const
@@ -112,13 +107,11 @@ TEST(Views, align_reduced_and_tilted_images)
     {
         Matx33d truth;
         const Mat other = change.of(image, truth);
-        Mat transform;
-        String reason;
-        ASSERT_TRUE(alignImages(image, other, transform, ALIGN_HOMOGRAPHY, noArray(), noArray(), &reason))
-                << reason;
+        const Aligned result(image, other, ALIGN_HOMOGRAPHY);
+        ASSERT_TRUE(result.found) << result.reason;
         for (const Vec3d& corner : {Vec3d(0, 0, 1), Vec3d(639, 0, 1), Vec3d(639, 479, 1), Vec3d(0, 479, 1)})
         {
-            const Vec3d back = Matx33d(transform) * truth * corner;
+            const Vec3d back = Matx33d(result.transform) * truth * corner;
             EXPECT_LT(std::hypot(back[0] / back[2] - corner[0], back[1] / back[2] - corner[1]), 1.5)
                     << change.name;
         }

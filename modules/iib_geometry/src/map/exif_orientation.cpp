@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include "upright.hpp"
+#include "exif_orientation.hpp"
 
 #include "../pose/lens.hpp"
 
@@ -20,18 +20,18 @@ const ParameterPair PAIRS[] = {{"OPENCV", 3, 2}, {"FULL_OPENCV", 3, 2}, {"THIN_P
 
 }  // namespace
 
-Upright::Upright(const Size& size, int orientation)
-    : orientation_(orientation), size_(size), fromStored_(Matx33d::eye())
+Upright::Upright(const Size& size, int orientation) : orientation_(orientation), size_(size)
 {
     if (orientation < 1 || orientation > 8)
         CV_Error(Error::StsBadArg, format("orientation is %d: it must be one of EXIF, 1 to 8", orientation));
-    if (orientation == 3)
-        fromStored_ = Matx33d(-1, 0, 0, 0, -1, 0, 0, 0, 1);
-    else if (orientation == 6)
-        fromStored_ = Matx33d(0, -1, 0, 1, 0, 0, 0, 0, 1);
-    else if (orientation == 8)
-        fromStored_ = Matx33d(0, 1, 0, -1, 0, 0, 0, 0, 1);
-    else if (orientation != 1)
+    const double cosine = orientation == 1   ? 1
+                          : orientation == 3 ? -1
+                                             : 0,
+                 sine = orientation == 6   ? 1
+                        : orientation == 8 ? -1
+                                           : 0;
+    fromStored_ = Matx33d(cosine, -sine, 0, sine, cosine, 0, 0, 0, 1);
+    if (cosine == sine)
         CV_Error(Error::StsBadArg, format("orientation is %d, of an image stored mirrored, which no camera "
                                           "sees: flip it first, and give 1, 3, 6 or 8",
                                            orientation));
