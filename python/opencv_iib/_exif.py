@@ -7,8 +7,6 @@ from typing import Any, Iterator, Optional
 
 import numpy as np
 
-from opencv_iib._files import read_bytes
-
 # Numbers of TIFF's and EXIF's tags.
 PHOTOMETRIC, SAMPLES, ORIENTATION = 0x0106, 0x0115, 0x0112
 EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x8769, 0x920A, 0xA405, 0xA20E, 0xA210
@@ -115,14 +113,14 @@ def exif_focal_length(data: bytes, width: int, height: int) -> Optional[float]:
     return pixels if 0 < pixels < 1e9 else None
 
 
-def gps_place(path: str) -> Optional[np.ndarray]:
+def gps_place(data: bytes) -> Optional[np.ndarray]:
     """The place of an image file's EXIF data in metres: on the Earth's sphere from its centre, and the height (NaN without one). None without a
     place, and for 0, 0, which cameras without a signal write."""
     try:
-        gps = _directory(_exif(read_bytes(path)), GPS_IFD)
+        gps = _directory(_exif(data), GPS_IFD)
         latitude, longitude = (np.radians(np.dot(gps[tag], (1, 1 / 60, 1 / 3600)) * (-1 if gps.get(ref) in ('S', 'W') else 1))
                                for tag, ref in ((LATITUDE, LATITUDE_REF), (LONGITUDE, LONGITUDE_REF)))
-    except (KeyError, TypeError, ValueError, OSError):
+    except (KeyError, TypeError, ValueError):
         return None
     height = _number(gps, ALTITUDE, np.nan) * (-1 if _number(gps, ALTITUDE_REF, 0) == 1 else 1)
     if not (latitude or longitude):

@@ -1,7 +1,9 @@
 """Writes files and folders: each file as a whole, by one process at a time, and nothing of the user's is lost."""
 from __future__ import annotations
 
+import csv
 import glob
+import io
 import json
 import os
 import re
@@ -93,7 +95,14 @@ def check_images(*paths: Path) -> None:
 
 def check_is_folder(path: Path) -> None:
     if not os.path.isdir(os.fspath(path)):
-        raise MissingFile(f'there is no folder {os.fspath(path)}')
+        raise MissingFile(f'{os.fspath(path)} is a file: give a folder' if os.path.exists(path) else f'there is no folder {os.fspath(path)}')
+
+
+def csv_bytes(rows: Iterable[Iterable[Any]]) -> bytes:
+    """A table as CSV; names of files that are not UTF-8 are escaped."""
+    text = io.StringIO(newline='')
+    csv.writer(text).writerows(rows)
+    return text.getvalue().encode(errors='backslashreplace')
 
 
 def write_whole(path: str, content: bytes) -> None:

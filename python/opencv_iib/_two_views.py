@@ -1,11 +1,7 @@
-"""Two-view geometry by MAGSAC or COLMAP's own program, and whether two images show the same."""
+"""Two-view geometry by MAGSAC, and whether two images show the same."""
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-import tempfile
-from typing import Iterable, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -48,25 +44,3 @@ def show_the_same(points_a: np.ndarray, points_b: np.ndarray, threshold: float =
     except cv2.error:  # degenerate points, for some versions
         return False
     return mask is not None and logFalseAlarms(points_a, points_b, mask, False, threshold) < _core.CERTAIN
-
-
-def colmap_binary() -> Optional[str]:
-    return shutil.which('colmap')
-
-
-def matches_importer(binary: str, database: str, pairs: Iterable[tuple[str, str]]) -> None:
-    """Has COLMAP verify the matches of a database. :raises RuntimeError: with the program's last lines, if it fails."""
-    with tempfile.NamedTemporaryFile('w', suffix='.txt', encoding='utf-8', delete=False) as file:
-        for a, b in pairs:
-            file.write(f'{a} {b}\n')
-    try:
-        def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-            return subprocess.run([binary, 'matches_importer', *arguments], capture_output=True, text=True,
-                                  env={**os.environ, 'QT_QPA_PLATFORM': 'offscreen'})
-        gpu = 'FeatureMatching' if '--FeatureMatching.use_gpu' in run('--help').stdout else 'SiftMatching'
-        done = run('--database_path', database, '--match_list_path', file.name, '--match_type', 'pairs', f'--{gpu}.use_gpu', '0')
-        if done.returncode:
-            tail = '\n'.join((done.stdout + done.stderr).splitlines()[-5:])
-            raise RuntimeError(f'colmap matches_importer failed:\n{tail}')
-    finally:
-        os.unlink(file.name)

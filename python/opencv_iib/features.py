@@ -10,7 +10,7 @@ import numpy as np
 
 from opencv_iib._arguments import InvalidOption, Path, check_choice, check_count, integer
 from opencv_iib._images import import_cv2, reduced, resized_mask
-from opencv_iib._upright import Turn, upright
+from opencv_iib._orientation import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector
 from opencv_iib.enums import Orientation, Preset

@@ -18,7 +18,7 @@ from opencv_iib._image_file import ImageFile, Masks
 from opencv_iib._images import check_picture, import_cv2, write_picture
 from opencv_iib._streams import is_open_file
 from opencv_iib._two_views import show_the_same
-from opencv_iib._upright import Turn, upright
+from opencv_iib._orientation import Turn, upright
 from opencv_iib.enums import Orientation
 from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.functions import match

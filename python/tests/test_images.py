@@ -3,7 +3,6 @@ import contextlib
 import io
 import os
 import struct
-import tempfile
 import unittest
 import warnings
 import zlib
@@ -17,7 +16,8 @@ from collection import Collection
 from opencv_iib.colmap import FeatureOptions
 from opencv_iib._exif import exif_focal_length, exif_orientation, gps_place
 from opencv_iib._image_file import ImageFile
-from opencv_iib._images import decode, decode_all, decode_first, find_images, in_8_bits
+from opencv_iib._image_names import find_images
+from opencv_iib._images import decode, decode_all, decode_first, in_8_bits
 from opencv_iib._tiff import tiff_bytes
 from opencv_iib.features import DETECTORS, Features, to_colmap
 from support import cv2, optional, texture
@@ -207,10 +207,8 @@ class Files(Collection):
         for tag in (0x112, 0x8769, 0x8825):
             for text in (b'x\0\0\0', bytes(4)):  # a text instead of numbers
                 data = struct.pack('<4sIHHHI', b'II*\0', 8, 1, tag, 2, 4) + text + bytes(4)
-                with self.subTest(tag=tag), tempfile.TemporaryDirectory() as folder:
-                    self.assertEqual((exif_orientation(data), exif_focal_length(data, 60, 40)), (1, None))
-                    Path(folder, 'a.tif').write_bytes(data)
-                    self.assertIsNone(gps_place(f'{folder}/a.tif'))
+                with self.subTest(tag=tag):
+                    self.assertEqual((exif_orientation(data), exif_focal_length(data, 60, 40), gps_place(data)), (1, None, None))
 
 
 class Found(Collection):

@@ -11,7 +11,7 @@ from unittest import mock
 import numpy as np
 
 import opencv_iib
-from opencv_iib import _upright
+from opencv_iib import _orientation
 from opencv_iib._exif import MIRRORED
 from opencv_iib._files import RECORD
 from opencv_iib.localization import Camera, Localizer, Location, smooth_poses
@@ -106,7 +106,7 @@ class Localization(OnWall):
         os.makedirs(folder)
         found = {}
         for orientation in STORED:
-            turn = _upright.Turn(orientation, *stored(self.grey(), orientation).shape[1::-1])
+            turn = _orientation.Turn(orientation, *stored(self.grey(), orientation).shape[1::-1])
             Path(folder, f'{orientation}.png').write_bytes(png(stored(self.grey(), orientation), orientation))
             if orientation in MIRRORED:
                 with self.assertRaisesRegex(opencv_iib.error, 'stored mirrored'):

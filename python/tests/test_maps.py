@@ -10,7 +10,7 @@ from unittest import mock
 import numpy as np
 
 import opencv_iib
-from opencv_iib import _core, _upright
+from opencv_iib import _core, _orientation
 from opencv_iib.localization import Camera, Localizer, build, update
 from opencv_iib.localization import maps, run as runs
 from support import cv2, files_end_at, run_command, seconds_until_interrupt
@@ -36,7 +36,7 @@ class Maps(OnWall):
             os.makedirs(os.path.dirname(os.path.join(images, name)), exist_ok=True)
             Path(images, name).write_bytes(png(image, orientation))
             turned = np.eye(4)
-            turned[:2, :2] = _upright.Turn(orientation, *image.shape[::-1]).matrix[:2, :2]
+            turned[:2, :2] = _orientation.Turn(orientation, *image.shape[::-1]).matrix[:2, :2]
             camera = Camera.parse(CAMERA).upright({6: 8, 8: 6}.get(orientation, orientation))
             posed.append(_core.PosedImage(name, camera, turned @ self.poses[name], np.empty((0, 2))))
         Path(images, 'mirrored.png').write_bytes(png(image, 2))

@@ -196,10 +196,10 @@ class Mistakes(InFolder):
     def test_files_that_cannot_be_meant_end_with_2_before_work(self):
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(self.folder)
-        os.mkdir('images')
-        for name in ('a.png', 'images/a.png', 'images/b.png'):
+        os.makedirs('images/c')
+        for name in ('a.png', 'images/a.png', 'images/b.png', 'images/c/a.png', 'images/c-a.png'):
             cv2.imwrite(name, texture(60, 60))
-        for name, text in (('pairs', 'a.png b.png\n'), ('empty', ''), ('itself', 'a.png a.png\n'), ('unknown', 'no image\n'), ('imu.csv', '1,0,0,0,0,0,9.81\n')):
+        for name, text in (('pairs', 'a.png b.png\n'), ('empty', ''), ('itself', 'a.png a.png\n'), ('unknown', 'no image\n'), ('alike', 'c/a.png b.png\nc-a.png b.png\n'), ('imu.csv', '1,0,0,0,0,0,9.81\n')):
             Path(name).write_text(text)
         files = set(self.folder.rglob('*'))
         pairs, localize = 'match --images images --pairs', 'localize --map images --images images --out'
@@ -213,7 +213,7 @@ class Mistakes(InFolder):
                                       f'map --model images --images gone --out out, localize --map gone --images images --out out, '
                                       f'localize --map images --images gone --out out, {localize} gone/x.csv, localize --map gone --images -, '
                                       f'update --map gone --images images, update --map images --images gone',
-                'is a file': f'align a.png images --out a.png, align a.png images --out a.png/x, {pairs} pairs --out pairs, map --model images --images images --out a.png, '
+                'is a file': f'align a.png images --out a.png, align a.png images --out a.png/x, {pairs} pairs --out pairs, map --model images --images images --out a.png, localize --map images --images a.png --out out, '
                              f'map --model images --images images --out a.png/x, {localize} a.png/x, update --map images --images images --out a.png',
                 'an input too': f'demo a.png a.png --out a.png, match a.png a.png --out a.png, match images/a.png images/a.png --mask a.png --picture a.png, '
                                 f'match images/a.png images/a.png --mask a.png --out a.png, demo images/a.png images/a.png --mask a.png --out a.png, '
@@ -232,6 +232,7 @@ class Mistakes(InFolder):
                 'has no pair': f'{pairs} empty --out out, colmap images x.db --pairs empty',
                 'a.png is paired with itself': f'{pairs} itself --out out, colmap images x.db --pairs itself',
                 'no image is called no or image': f'{pairs} unknown --out out, colmap images x.db --pairs unknown',
+                '2 pairs would write c-a.png/b.png, since / becomes -: rename an image': f'{pairs} alike --out out',
                 'goes with': f'match --pairs pairs, {pairs} pairs, {pairs} pairs --out out a.png, {pairs} pairs --out out --picture x',
                 '60 x 60': 'match a.png a.png --camera PINHOLE;9;9;400;400;4;4',
                 'its camera has 9 x 9': f'{pairs} pairs --out out --camera PINHOLE;9;9;5;5;4;4'}.items():

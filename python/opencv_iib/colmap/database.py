@@ -16,7 +16,7 @@ import numpy as np
 
 from opencv_iib._arguments import Path
 from opencv_iib._files import replaced
-from opencv_iib._images import in_order
+from opencv_iib._image_names import in_order
 from opencv_iib._partial import close_partial, open_partial
 
 SCHEMA_VERSION = 3800

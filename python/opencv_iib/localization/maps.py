@@ -15,7 +15,7 @@ from opencv_iib._arrays import as_mask
 from opencv_iib._camera import AnyCamera, Camera
 from opencv_iib._files import check_folder, check_is_folder
 from opencv_iib._image_file import ImageFile, Masks
-from opencv_iib._images import in_order
+from opencv_iib._image_names import in_order
 from opencv_iib._parallel import thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
