@@ -65,8 +65,7 @@ class Imu(Options):
         found = trajectory(self.out)
         self.assertEqual(list(found), [f'{8 + n}.500000' for n in range(6)])
         self.check(found['9.500000'])
-        with open(self.out / 'frames.csv', newline='') as file:
-            rows = list(csv.DictReader(file))
+        rows = self.rows('out/frames.csv')
         self.assertEqual([(row['name'], row['found'], bool(row['x_x']), bool(row['tx'])) for row in rows][:2],
                          [('8.500000.png', '1', True, True), ('9.500000.png', '0', False, True)])
         contradicting = self.write(''.join(f'{time},0,0,0,0,{30 * felt[1]:.9f},0\n' for time in range(8000000000, 14000000001, 5000000)))
@@ -131,26 +130,6 @@ class LargeImages(Options):
         self.assertFalse(np.array_equal(found[0], found[250]))
         self.assertLess(red[250], 3 * red[0])
         self.expect_mistake('at least 32 pixels, or 0', '--max-size', 31)
-
-
-class Sequence(Options):
-
-    def test_each_image_is_looked_for_where_the_last_one_was(self):
-        priors, real = [], Localizer.localize
-        for name in ('10.png', '9.png', '11.png', 'x.png'):
-            self.image(name, np.zeros((HEIGHT, WIDTH), np.uint8) if name == '10.png' else None)
-
-        def localize(localizer, image, camera, prior, *more):
-            priors.append((int(image.any()), prior is not None))
-            return real(localizer, image, camera, prior, *more)
-        with mock.patch.object(Localizer, 'localize', localize):
-            self.assertEqual(self.localize('--camera', CAMERA, '--sequence')[0], 4)
-        self.assertEqual(priors, [(1, False), (0, True), (1, False), (1, True)])
-        self.check(trajectory(self.out)['x'])
-        priors.clear()
-        with mock.patch.object(Localizer, 'localize', localize):
-            self.localize('--camera', CAMERA)
-        self.assertFalse(any(prior for _, prior in priors))
 
 
 class Table(Options):
@@ -227,23 +206,28 @@ class Stream(Options):
         self.assertEqual(self.stream(none)[0], 3)
         self.assertEqual(self.stream('')[0], 0)
 
-    def test_the_last_pose_is_the_prior_of_the_next(self):
-        a, none, priors = self.image('a.png'), self.image('none.png', np.zeros((HEIGHT, WIDTH), np.uint8)), []
-
-        def localize(localizer, image, camera, prior, *more):
-            priors.append(prior is not None)
-            return real(localizer, image, camera, prior, *more)
-        real = Localizer.localize
-        with mock.patch.object(Localizer, 'localize', localize):
-            self.stream('\n'.join((a, a, none, a)), '--camera', CAMERA)
-        self.assertEqual(priors, [False, True, True, False])
-
     def test_names_are_bytes_whatever_the_encoding_of_the_pipes(self):
         name = os.path.join(os.fsencode(self.images), 'žluť.png'.encode())
         shutil.copy(self.image('a.png'), name)
         found = subprocess.run([sys.executable, '-m', 'opencv_iib', 'localize', '--map', self.map, '--images', '-', '--camera', CAMERA],
                                input=name + b'\n', capture_output=True, env={**os.environ, 'PYTHONIOENCODING': 'cp1252'})
         self.assertEqual((found.returncode, found.stdout.rsplit(b' ', 7)[0]), (0, name))
+
+    def test_each_image_is_looked_for_where_the_last_one_was(self):
+        priors, real = [], Localizer.localize
+        paths = [self.image(name, np.zeros((HEIGHT, WIDTH), np.uint8) if name == '10.png' else None) for name in ('9.png', '10.png', '11.png', 'x.png')]
+
+        def localize(localizer, image, camera, prior, *more):
+            priors.append((int(image.any()), prior is not None))
+            return real(localizer, image, camera, prior, *more)
+        with mock.patch.object(Localizer, 'localize', localize):
+            for run in (lambda: self.localize('--camera', CAMERA, '--sequence'), lambda: self.stream('\n'.join(paths), '--camera', CAMERA)):
+                self.assertEqual(run()[0], 4)
+                self.assertEqual(priors, [(1, False), (0, True), (1, False), (1, True)])
+                priors.clear()
+            self.check(trajectory(self.out)['x'])
+            self.localize('--camera', CAMERA)
+        self.assertFalse(any(prior for _, prior in priors))
 
     def test_mistakes(self):
         for option in (['--out', self.out], ['--pictures'], ['--imu', 'x.csv'], ['--sequence']):
