@@ -1,5 +1,4 @@
 """Images that are stored rotated, as telephones write them."""
-import csv
 import json
 import struct
 import unittest
@@ -17,7 +16,7 @@ from opencv_iib._image_file import ImageFile
 from opencv_iib.features import Features
 from opencv_iib.measure import match_images
 from opencv_iib.localization import Camera
-from support import cv2, optional, run_command, texture
+from support import cv2, optional, rows_of, run_command, texture
 
 h5py = optional('h5py')
 
@@ -154,8 +153,7 @@ class Commands(Collection):
         for out in outs:
             self.assertEqual(run_command('match', '--pairs', self.folder / 'pairs.txt', '--images', self.folder, '--out', out, '--points', 300)[0], 0)
         reported = [json.loads((self.folder / 'm.json').read_text())['rotation'], float(np.load(self.folder / 'm.npz')['rotation'])]
-        with open(outs[0] / 'pairs.csv', newline='') as file:
-            reported.append(float(next(csv.DictReader(file))['rotation']))
+        reported.append(float(rows_of(outs[0], 'pairs.csv')[0]['rotation']))
         if h5py:
             with h5py.File(outs[1]) as file:
                 reported.append(float(file['a.png/b.png'].attrs['rotation']))
