@@ -13,8 +13,8 @@ EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x87
 MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolution
 GPS_IFD, LATITUDE_REF, LATITUDE, LONGITUDE_REF, LONGITUDE, ALTITUDE_REF, ALTITUDE = 0x8825, 1, 2, 3, 4, 5, 6
 EARTH = 6371000  # metres, the radius
-ASCII, SHORT, RATIONAL, DOUBLE = 2, 3, 5, 12  # TIFF's types
-FORMS = {1: 'B', ASCII: 's', SHORT: 'H', 4: 'I', RATIONAL: 'II', DOUBLE: 'd', 16: 'Q', 18: 'Q'}  #: of a value, by the type; as in struct
+ASCII, SHORT, RATIONAL = 2, 3, 5  # TIFF's types
+FORMS = {1: 'B', ASCII: 's', SHORT: 'H', 4: 'I', RATIONAL: 'II', 16: 'Q', 18: 'Q'}  #: of a value, by the type; as in struct
 MIRRORED = 2, 4, 5, 7  #: EXIF's orientations of images that are stored mirrored
 START_OF_SCAN, APP1 = 0xda, 0xe1  # JPEG's markers
 TIFF = (b'II*\0', b'MM\0*', b'II+\0', b'MM\0+')  #: first bytes of TIFF files; the last two have offsets of 64 bits
@@ -60,7 +60,7 @@ def _exif(data: bytes) -> bytes:
 
 
 def _directory(tiff: bytes, pointer: int = 0) -> dict[int, Any]:
-    """The entries of the first directory of a TIFF, or of the directory that its entry `pointer` leads to, by their tags: a list of finite
+    """The entries of the first directory of a TIFF, or of the directory that its entry `pointer` leads to, by their tags: a list of
     numbers, or a text. Empty for a damaged directory."""
     order, (counted, word, room) = '<' if tiff[:1] == b'I' else '>', ('Q', 'Q', 8) if tiff[:4] in TIFF[2:] else ('H', 'I', 4)
 
@@ -78,7 +78,7 @@ def _directory(tiff: bytes, pointer: int = 0) -> dict[int, Any]:
                 values: Any = unpacked(form, entry + 4 + room if struct.calcsize(order + form) <= room else unpacked(word, entry + 4 + room)[0])
                 if kind == RATIONAL:
                     values = [above / below if below else 0 for above, below in zip(values[::2], values[1::2])]
-                if length and np.isfinite(values if kind == DOUBLE else 0).all():
+                if length:
                     found[tag] = values[0].split(b'\0')[0].decode('latin-1').strip() if kind == ASCII else values
     except struct.error:
         return {}

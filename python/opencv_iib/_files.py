@@ -175,7 +175,10 @@ class Results(AbstractContextManager['Results']):
         self.folder, self._command = os.path.realpath(out), command
         self.written: set[str] = set()  #: names of files, with '/'
         self._adding, self._record = threading.Lock(), os.path.join(self.folder, RECORD)
-        by, listed = _recorded(self._record)
+        by, listed = None, set[str]()
+        with suppress(OSError, ValueError), open(self._record, encoding='ascii') as file:
+            by, *names = [json.loads(line) for line in file if line.endswith('\n')]  # the last one may be cut off
+            listed = set(names)
         if by not in (None, command):
             raise FileExistsError(f'{out} holds results of {by}: choose another folder')
         whole = listed | {RECORD}
@@ -222,14 +225,6 @@ def _files_below(folder: str) -> list[str]:
     """Names of files below a folder, relative to it, with '/', without links."""
     found = [os.path.relpath(os.path.join(root, name), folder).replace(os.sep, '/') for root, _, files in os.walk(folder) for name in files]
     return [name for name in found if not os.path.islink(os.path.join(folder, name))]
-
-
-def _recorded(record: str) -> tuple[Any, set[str]]:
-    """The command of a record, and its files; None and no files without a record."""
-    with suppress(OSError, ValueError), open(record, encoding='ascii') as file:
-        command, *names = [json.loads(line) for line in file if line.endswith('\n')]  # the last one may be cut off
-        return command, set(names)
-    return None, set()
 
 
 def read_bytes(path: Path) -> bytes:

@@ -120,52 +120,58 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
         raise ValueError(f'no image to align but the reference, {reference}')
     check_folder(out, (*paths, *masks.check([os.path.basename(path) for path in (reference, *paths)])))
     work = _Work(reference, options, masks, log)
-    settings = [*options, os.path.abspath(reference), work.stamp(reference), __version__]
-    stamps = {path: work.stamp(path) for path in paths}
-    stopped: Optional[BaseException] = None
     with Results(out, 'align') as results:
         work.place = results.place
-        done, old_part = _known(results.folder, settings, stamps)
-        known, names = list(done), _file_names(paths, done)
-        part, progress = None if crop else work.whole, Progress('aligning', len(paths), len(done))
-
-        def forget() -> None:
-            """Removes the state of an earlier call before its pictures are replaced by those of another part or other options."""
-            if part not in (None, old_part):
-                results.remove([STATE])
-
-        def do(job: Callable[[str], Aligned], paths: list[str]) -> None:
-            done.update(in_parallel(job, paths, threads))
-
-        def align_one(path: str) -> Aligned:
-            found = work.align(path, names[path], part)
-            progress.step()
-            return found
-        forget()
-        try:
-            do(align_one, [path for path in paths if path not in done])
-            if chain:
-                _chain(work, series, done, do)
-            part = part or _common(work.whole, done.values())
-        except (Exception, KeyboardInterrupt) as e:
-            if not done or part is None:
-                raise
-            stopped = e
-        progress.close()
-        forget()
-        for name in [done[path].file for path in known if part == old_part]:
-            for file in (name, f'{PREVIEWS}/{name}.jpg'):
-                if name and os.path.exists(os.path.join(results.folder, file)):
-                    results.place(file)
-        do(lambda path: work.write(done[path], names[path], part),
-           [path for path, each in done.items() if each.transform and each.file not in results.written])
-        ordered = [done[path] for path in paths if path in done]
-        _write_tables(results, work.write_reference(part), os.path.basename(reference), ordered, part)
-        state = {'settings': settings, 'part': part, 'images': [[stamps[each.name], each] for each in ordered if each.size]}
-        write_whole(results.place(STATE), json.dumps(state).encode())
+        done, stopped = _align_into(results, work, series, paths, threads)
     if stopped is not None:
         raise stopped
-    return ordered
+    return done
+
+
+def _align_into(results: Results, work: _Work, series: Sequence[str], paths: Sequence[str], threads: Threads
+                ) -> tuple[list[Aligned], Optional[BaseException]]:
+    """Aligns and writes images, and those before an error if their pictures can be written.
+    :param series: as in _chain; `paths` are those without the reference."""
+    settings, stamps = work.settings(), {path: work.stamp(path) for path in paths}
+    done, old_part = _known(results.folder, settings, stamps)
+    known, names = list(done), _file_names(paths, done)
+    part, progress = None if work.options.crop else work.whole, Progress('aligning', len(paths), len(done))
+    stopped: Optional[BaseException] = None
+
+    def drop_old_state() -> None:  # so that a killed call leaves no state that lists pictures of another part
+        if part not in (None, old_part):
+            results.remove([STATE])
+
+    def do(job: Callable[[str], Aligned], paths: list[str]) -> None:
+        done.update(in_parallel(job, paths, threads))
+
+    def align_one(path: str) -> Aligned:
+        found = work.align(path, names[path], part)
+        progress.step()
+        return found
+    drop_old_state()
+    try:
+        do(align_one, [path for path in paths if path not in done])
+        if work.options.chain:
+            _chain(work, series, done, do)
+        part = part or _common(work.whole, done.values())
+    except (Exception, KeyboardInterrupt) as e:
+        if not done or part is None:
+            raise
+        stopped = e
+    progress.close()
+    drop_old_state()
+    for name in [done[path].file for path in known if part == old_part]:
+        for file in (name, f'{PREVIEWS}/{name}.jpg'):
+            if name and os.path.exists(os.path.join(results.folder, file)):
+                results.place(file)
+    do(lambda path: work.write(done[path], names[path], part),
+       [path for path, each in done.items() if each.transform and each.file not in results.written])
+    ordered = [done[path] for path in paths if path in done]
+    _write_tables(results, work.write_reference(part), os.path.basename(work.path), ordered, part)
+    state = {'settings': settings, 'part': part, 'images': [[stamps[each.name], each] for each in ordered if each.size]}
+    write_whole(results.place(STATE), json.dumps(state).encode())
+    return ordered, stopped
 
 
 def _expanded(images: Sequence[Path], out: str, log: Callable[[str], None]) -> list[str]:
@@ -315,7 +321,7 @@ class _Work:
     place: Callable[[str], str]  #: the path of a file to write, by its name
 
     def __init__(self, reference: str, options: _Options, masks: Masks, log: Callable[[str], None]) -> None:
-        self._options, self._masks, self._log = options, masks, log
+        self.path, self.options, self._masks, self._log = reference, options, masks, log
         try:
             self._reference = self._view(reference)
         except (ValueError, OSError) as e:
@@ -329,8 +335,12 @@ class _Work:
         """As Masks.stamp."""
         return self._masks.stamp(path, os.path.basename(path))
 
+    def settings(self) -> list[Any]:
+        """What results depend on besides their images."""
+        return [*self.options, os.path.abspath(self.path), self.stamp(self.path), __version__]
+
     def _view(self, path: str, factor: int = 0) -> _Compared:
-        view = _Compared(path, self._options, self._masks, factor)
+        view = _Compared(path, self.options, self._masks, factor)
         if view.left_out:
             self._log(f'{path}: {view.left_out} of its pages are left out, since they have another size or type than the first one')
         return view
@@ -339,7 +349,7 @@ class _Work:
         """:param name: of the picture, without suffix.
         :param part: rectangle of the reference to write: x, y, width, height; None: write nothing."""
         try:
-            view = self._view(path, self._reference.factor if self._options.model == AlignmentModel.TRANSLATION else 0)
+            view = self._view(path, self._reference.factor if self.options.model == AlignmentModel.TRANSLATION else 0)
         except (ValueError, OSError) as e:
             return Aligned(path, getattr(e, 'strerror', None) or str(e))
         aligned = self._aligned(self._aligner, self._reference, view, path)
@@ -352,15 +362,15 @@ class _Work:
         transform = onto.matrix @ found.transform @ np.linalg.inv(view.matrix)
         transform /= transform[2, 2]
         errors = view.turn.corners(found.error.ravel()) * onto.factor
-        model = found.simplest if self._options.model == AlignmentModel.AUTO else AlignmentModel(self._options.model)
+        model = found.simplest if self.options.model == AlignmentModel.AUTO else AlignmentModel(self.options.model)
         return Aligned(path, 'aligned', len(found.matches), errors.tolist(), transform.ravel().tolist(), '', view.size,
                        *rotation_and_scale(np.linalg.inv(_derivative(found.transform, *np.array(view.grey.shape[::-1]) / 2))), model.name, found.note)
 
     def align_through(self, image: Aligned, other: Aligned) -> Aligned:
         """Aligns an image by its transform to another image and that image's transform to the reference; unchanged if there is none."""
         onto = self._view(other.name)
-        view = self._view(image.name, onto.factor if self._options.model == AlignmentModel.TRANSLATION else 0)
-        found = self._aligned(ImageAligner(onto.grey, self._options.model, onto.mask), onto, view, image.name)
+        view = self._view(image.name, onto.factor if self.options.model == AlignmentModel.TRANSLATION else 0)
+        found = self._aligned(ImageAligner(onto.grey, self.options.model, onto.mask), onto, view, image.name)
         if not found.transform:
             return image
         to_other, to_reference = (np.reshape(each.transform, (3, 3)) for each in (found, other))
@@ -375,7 +385,7 @@ class _Work:
 
     def write(self, aligned: Aligned, name: str, part: list[int]) -> Aligned:
         """Writes an image whose transform is known."""
-        return self._written(_Compared(aligned.name, self._options, Masks(None)), aligned, name, part)
+        return self._written(_Compared(aligned.name, self.options, Masks(None)), aligned, name, part)
 
     def write_reference(self, part: list[int]) -> str:
         """:return: the name of its file."""
@@ -392,7 +402,7 @@ class _Work:
 
     def _write(self, view: _Compared, pages: Sequence[NDArray[Any]], name: str, part: list[int]) -> str:
         whole = len(pages) == 1 and holds(view.suffix, pages[0])
-        suffix = FORMATS[self._options.format] if self._options.format else view.suffix if whole else '.tif'
+        suffix = FORMATS[self.options.format] if self.options.format else view.suffix if whole else '.tif'
         file = name + suffix
         write_picture(self.place(file), *pages, no_data=view.no_data, geo=geo_of_part(self._reference.geo, part[0], part[1]))
         if suffix == '.tif' or pages[0].dtype != np.uint8:  # browsers do not show it, or too dark
@@ -407,7 +417,7 @@ class _Work:
         cv2 = import_cv2()
 
         def warp(values: NDArray[Any]) -> NDArray[Any]:
-            warped: NDArray[Any] = cv2.warpPerspective(values, onto, tuple(size), flags=getattr(cv2, 'INTER_' + self._options.interpolation))
+            warped: NDArray[Any] = cv2.warpPerspective(values, onto, tuple(size), flags=getattr(cv2, 'INTER_' + self.options.interpolation))
             return warped if warped.ndim == values.ndim else warped[..., None]
         holes, values = view.holes(page), page
         if holes is not None:

@@ -14,7 +14,7 @@ from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, number
 from opencv_iib._arrays import ArrayOrArrays, Images, are_images, as_arrays, as_image, as_matrix, with_images
 from opencv_iib._copies import around, copied
-from opencv_iib.detectors import HessianDetector, core_detector
+from opencv_iib.detectors import HessianDetector, core_detector, method_detect
 from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset, preset_number
 from opencv_iib.keypoints import Keypoints, as_rows
 
@@ -44,6 +44,7 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
      PRESET_VIEWPOINT, PRESET_UNIVERSAL, PRESET_SMALL) = Preset
 
     _detector: Any = None  #: what its user gave it
+    detect = method_detect
 
     def __init__(self, scaleFactor: float = 2.0, granularity: int = 4, channels: int = Channel.DEFAULT,
                  mapping: int = Mapping.MEAN, overlap: bool = False, useOrientation: bool = False,
@@ -157,17 +158,6 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
 
         :param quads: Q x 5 int32: level, channel, row, column, bits to keep. Empty: all quads again."""
         self._setSelection(as_matrix(quads, 'the selection'))
-
-    def save(self, filename: Path) -> None:
-        """The same as write()."""
-        self.write(filename)
-
-    def write(self, fileName: Path) -> None:
-        """Writes the parameters, but not the detector, to a .yml, .xml or .json file, which read() and C++ read.
-
-        :raises opencv_iib.error: if the file cannot be written; an older one is kept. Also for a link that leads to no file, a folder, a
-            device or a pipe."""
-        self._save(fileName)
 
     def read(self, fileName: Path) -> None:
         """Reads a file of write() or C++, also packed by gzip."""

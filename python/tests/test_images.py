@@ -194,19 +194,10 @@ class Files(Collection):
                 self.assertEqual((exif_orientation(wild), exif_focal_length(wild, 60, 40)), (1, None))
             self.assertEqual(exif_orientation(data[:26]), 1)
 
-    def test_numbers_that_are_not_finite_are_no_information(self):
-        for value in (np.inf, -np.inf, np.nan, 1e308, -1e308):
-            for tag in (0x112, 0x8769, 0x115):
-                data = struct.pack('<4sIHHHIIId', b'II*\0', 8, 1, tag, 12, 1, 26, 0, value)
-                self.assertEqual((exif_orientation(data), exif_focal_length(data, 60, 40)), (1, None))
-            for tag in (0x920A, 0xA405, 0xA210):
-                exif = struct.pack('<4sIHHHIIIHHHIIHHIIId', b'II*\0', 8, 1, 0x8769, 4, 1, 26, 0, 2, tag, 12, 1, 56, 0xA20E, 4, 1, 9, 0, value)
-                self.assertIsNone(exif_focal_length(exif, 60, 40))
-
     def test_exif_of_wrong_types_is_ignored(self):
         for tag in (0x112, 0x8769, 0x8825):
-            for text in (b'x\0\0\0', bytes(4)):  # a text instead of numbers
-                data = struct.pack('<4sIHHHI', b'II*\0', 8, 1, tag, 2, 4) + text + bytes(4)
+            for kind, value in ((2, b'x\0\0\0'), (2, bytes(4)), (12, struct.pack('<d', np.nan))):  # a text, or numbers of 64 bits
+                data = struct.pack('<4sIHHHI', b'II*\0', 8, 1, tag, kind, 4) + value + bytes(4)
                 with self.subTest(tag=tag):
                     self.assertEqual((exif_orientation(data), exif_focal_length(data, 60, 40), gps_place(data)), (1, None, None))
 

@@ -7,6 +7,7 @@ from typing import Callable, Iterable, Iterator, Optional, Sequence
 
 import numpy as np
 
+from opencv_iib._arguments import Path
 from opencv_iib._exif import gps_place
 from opencv_iib._files import read_bytes
 from opencv_iib._pair_list import BLOCK, Pair, read_list
@@ -73,7 +74,7 @@ def gps_places(folder: str, names: Iterable[str]) -> list[Optional[np.ndarray]]:
     return [place(os.path.join(folder, name)) for name in names]
 
 
-def list_pairs(database: Database, folder: str, names: Iterable[str], pairs: str, neighbours: int, level_sizes: tuple[int, ...]) -> Pairs:
+def list_pairs(database: Database, folder: str, names: Iterable[str], pairs: Path, neighbours: int, level_sizes: tuple[int, ...]) -> Pairs:
     """:param pairs: as in Options; so is `neighbours`. :return: pairs of image ids, and their number if it is known."""
     numbers = database.image_ids()
     ids = list(numbers.values())

@@ -175,20 +175,14 @@ def describe_again(database: Database, folder: str, names: Sequence[str], option
                              'database with force (--force)')
 
 
-@functools.lru_cache(maxsize=1)
-def _matcher(level_sizes: tuple[int, ...], ratio: float) -> HierarchicalMatcher:
-    matcher = HierarchicalMatcher.create(level_sizes, crossCheck=True)
-    matcher.setMaxRatio(ratio)
-    return matcher
-
-
 def match_tile(level_sizes: tuple[int, ...], ratio: float, verify: str,
                tile: tuple[list[Pair], dict[int, Any]]) -> list[tuple[Any, ...]]:
     """Arguments of Database.add_pair for each pair of image ids, from the codes and points of images by their ids."""
-    found = []
+    found, matcher = [], HierarchicalMatcher.create(level_sizes, crossCheck=True)
+    matcher.setMaxRatio(ratio)
     for a, b in tile[0]:
         (codes_a, points_a), (codes_b, points_b) = tile[1][a], tile[1][b]
-        matches = opencv_iib.match(codes_a, codes_b, _matcher(level_sizes, ratio)).pairs
+        matches = opencv_iib.match(codes_a, codes_b, matcher).pairs
         if verify == 'magsac':
             inliers, matrix = magsac(points_a[matches[:, 0]], points_b[matches[:, 1]])
             found.append((matches, matches[inliers], matrix))

@@ -27,12 +27,6 @@ LEFT_OUT = ': left out of the map'
 UNREAD = (' cannot be read' + LEFT_OUT).encode()
 
 
-def _count(file: str) -> int:
-    """The number of entries of a binary file of COLMAP."""
-    with open(file, 'rb') as opened:
-        return int.from_bytes(opened.read(8), 'little')
-
-
 def _check_new(out: Path, force: bool) -> None:
     check_folder(out)
     if os.path.exists(os.path.join(out, 'map.iib')) and not force:
@@ -117,7 +111,7 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
             _core.setNumThreads(threads)
             if progress is not None:
                 progress.close()
-    known, seen = (_count(os.path.join(target, name)) for name in ('images.bin', 'points3D.bin'))
+    known, seen = (int(np.fromfile(os.path.join(target, name), '<u8', 1)[0]) for name in ('images.bin', 'points3D.bin'))  # which begin with counts
     return {'images': known - left_out, 'points': seen, 'left out': left_out}
 
 

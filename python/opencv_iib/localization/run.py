@@ -113,7 +113,8 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
     check_sizes(folder, names, locator.masks, locator.camera)
 
     def job(name: str) -> tuple[Camera, Location]:
-        check_name(name)
+        if not is_utf8(name) or name.startswith('#') or len(name.splitlines()) > 1:
+            raise ValueError('the trajectory cannot hold this name: rename it in UTF-8, without a leading # or a line break')
         return locator(os.path.join(folder, name), name)
 
     located = in_parallel(job, names, Threads(thread_count(workers)), (ValueError, OSError, error))
@@ -132,12 +133,6 @@ def images_of(folder: Path, out: Path = '', log: Callable[[str], None] = note) -
     if not names:
         raise ValueError(f'no images below {folder}')
     return names
-
-
-def check_name(name: str) -> None:
-    """:raises ValueError: for a name that the results cannot hold."""
-    if not is_utf8(name) or name.startswith('#') or len(name.splitlines()) > 1:
-        raise ValueError('the trajectory cannot hold this name: rename it in UTF-8, without a leading # or a line break')
 
 
 def labels_of(names: Sequence[str]) -> dict[str, str]:
