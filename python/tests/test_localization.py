@@ -215,6 +215,24 @@ class Localization(OnWall):
         self.assertRegex(run_command(*mapping, larger)[2], r'\nmap: no keypoint was found in any .* of; .*320 x 240 .* 640 x 480: left out of the map\n$')
         self.assertFalse(os.path.exists(out) and os.listdir(out))
 
+    def test_every_command_takes_paths_that_are_not_utf8_and_is_quiet(self):
+        folder = self.path('x') + '/caf\udce9'
+        shutil.copytree(self.dark, folder + '/images')
+        shutil.copytree(self.images, folder + '/mapped')
+        Path(folder, 'pairs.txt').write_text('c.png a-b.png\n')
+        pair, images, of = (f'{folder}/images/c.png', f'{folder}/images/a-b.png'), f'{folder}/images', ('--images', f'{folder}/images')
+        for arguments in (('demo', *pair, '--out', folder + '/x.png'), ('match', *pair, '--out', folder + '/x.csv'),
+                          ('match', '--pairs', folder + '/pairs.txt', *of, '--out', folder + '/matched'), ('align', *pair, '--out', folder + '/aligned'),
+                          ('colmap', images, folder + '/x.db', '--points', '300', '--verify', 'magsac'),
+                          ('map', '--model', self.model, '--images', folder + '/mapped', '--out', folder + '/map', '--points', '400'),
+                          ('localize', '--map', folder + '/map', *of, '--out', folder + '/out'), ('update', '--map', folder + '/map', *of)):
+            with self.subTest(arguments):
+                status, out, _ = run_command(*arguments)
+                self.assertIn(status, (0, 3))
+                out.encode()  # like a terminal
+                self.assertEqual(run_command(*arguments, '--quiet', *(['--force'] if arguments[0] == 'map' else []))[1:], ('', ''))
+        self.assertEqual(len(trajectory(folder + '/out')), 3)
+
     def test_no_command_replaces_what_is_the_users(self):
         c, listing = os.path.join(self.dark, 'c.png'), Path(self.path('pairs.txt'))
         listing.write_text('c.png a-b.png\n')

@@ -11,10 +11,10 @@ import numpy as np
 
 import opencv_iib
 from opencv_iib import _core, _orientation
-from opencv_iib.localization import Camera, Localizer, build, update
+from opencv_iib.localization import Camera, Localizer, build
 from opencv_iib.localization import maps, run as runs
 from support import cv2, files_end_at, run_command, seconds_until_interrupt
-from wall import CAMERA, HEIGHT, OnWall, WIDTH, evening, photograph, pose, rigid, trajectory, wall, write_model
+from wall import CAMERA, HEIGHT, OnWall, WIDTH, photograph, pose, rigid, trajectory, wall, write_model
 
 STRECHA = os.path.join(os.environ.get('OPENCV_TEST_DATA_PATH', ''), 'strecha', 'Herz-Jesus-P8')
 
@@ -115,13 +115,6 @@ class Maps(OnWall):
         self.check(Localizer(made).localize(photograph(wall(3), pose(*self.truth['c'])), CAMERA))
         self.assertRegex(Localizer(made).localize(self.grey(), CAMERA).reason, 'too few')  # recommended points would be found
 
-    def test_nothing_is_said_with_quiet(self):
-        arguments = 'map', '--model', self.model, '--images', self.images, '--points', '300', '--out', self.path('map')
-        os.makedirs(arguments[-1])
-        Path(arguments[-1], '.DS_Store').touch()  # not a map
-        for more in ((), ('--force',)):
-            self.assertEqual(run_command(*arguments, '--quiet', *more), (0, '', ''))
-
     def test_an_interrupted_map(self):
         images, count = [], 40
         for i in range(count):
@@ -185,6 +178,7 @@ class Maps(OnWall):
     def test_a_map_is_replaced_by_force_alone(self):
         other = self.path('other')
         shutil.copytree(self.map, other)
+        Path(other, '.DS_Store').touch()  # of a desktop, not the user's
         for command in (('map', '--model', self.model, '--images', self.images, '--points', '300'), ('update', '--map', self.map, '--images', self.dark)):
             before = Path(other, 'map.iib').read_bytes()
             self.check_error('--force', *command, '--out', other)
@@ -208,15 +202,6 @@ class Maps(OnWall):
             self.assertEqual(self.localize(images + '-out', '--pictures', images=images)[0], 0)
             self.assertEqual(len(trajectory(os.path.join(images, 'out'))), 3)
 
-    def test_paths_that_are_not_utf8(self):
-        folder = self.path('x') + '/caf\udce9'
-        shutil.copytree(self.dark, folder + '/images')
-        shutil.copytree(self.images, folder + '/mapped')
-        self.assertEqual(run_command('map', '--model', self.model, '--images', folder + '/mapped', '--out', folder + '/map')[0], 0)
-        self.assertEqual(self.localize(folder + '/out', map=folder + '/map', images=folder + '/images')[0], 0)
-        self.assertEqual(run_command('update', '--map', folder + '/map', '--images', folder + '/images')[0], 0)
-        self.assertEqual(len(trajectory(folder + '/out')), 3)
-
     def test_a_full_disk_leaves_the_old_results(self):
         out = self.path('out')
         self.assertEqual(self.localize(out, '--pictures')[0], 0)
@@ -228,22 +213,6 @@ class Maps(OnWall):
             self.assertEqual((status, before[1]), (1, sorted(os.listdir(out))))
         self.assertEqual(trajectory(out).keys(), before[0].keys())
 
-    def test_an_update_adds_a_light(self):
-        out, night = self.path('map'), self.path('night')
-        os.makedirs(night)
-        for name, place in self.truth.items():
-            view = photograph(wall(3), pose(*place), lambda grey: evening(grey, noise=6))
-            cv2.imwrite(os.path.join(night, name.replace('/', ' ') + '.png'), view)
-        with redirect_stderr(io.StringIO()):
-            counts = update(self.map, night, CAMERA, out)
-            self.assertEqual((counts['images'], counts['localized']), (3, 3))
-            self.assertGreater(counts['added'], 0)
-            self.check(Localizer(out).localize(self.grey(), CAMERA))
-            old, new = (Localizer(map, 400).localize(view, CAMERA).inliers for map in (self.map, out))
-            self.assertGreater(new, 1.2 * old)
-            again = update(out, night)
-        self.assertEqual((again['localized'], again['added']), (3, 0))
-
     def test_an_update_says_why_an_image_has_no_pose(self):
         mixed, out = self.path('mixed'), self.path('new')
         os.makedirs(mixed)
@@ -254,7 +223,8 @@ class Maps(OnWall):
         self.assertEqual((status, '2 images, 0 localized' in text), (3, True))
         self.assertRegex(errors, r'broken.png: the file is empty\nelsewhere.png: too few matches')
         shutil.copy(os.path.join(self.dark, 'c.png'), mixed)
-        self.assertEqual(run_command(*arguments, '--force')[0], 4)
+        status, text, _ = run_command(*arguments, '--force')
+        self.assertEqual((status, '3 images, 1 localized' in text), (4, True))
 
     @unittest.skipUnless(os.path.isdir(STRECHA), 'OPENCV_TEST_DATA_PATH has no strecha/Herz-Jesus-P8')
     def test_photographs_within_five_centimetres_also_relit(self):
