@@ -14,7 +14,7 @@ from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, number
 from opencv_iib._arrays import ArrayOrArrays, Images, are_images, as_arrays, as_image, as_matrix, with_images
 from opencv_iib._copies import around, copied
-from opencv_iib.detectors import HessianDetector, core_detector, method_detect
+from opencv_iib.detectors import HessianDetector, core_detector
 from opencv_iib.enums import Border, Channel, Mapping, Orientation, Preset, preset_number
 from opencv_iib.keypoints import Keypoints, as_rows
 
@@ -44,7 +44,6 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
      PRESET_VIEWPOINT, PRESET_UNIVERSAL, PRESET_SMALL) = Preset
 
     _detector: Any = None  #: what its user gave it
-    detect = method_detect
 
     def __init__(self, scaleFactor: float = 2.0, granularity: int = 4, channels: int = Channel.DEFAULT,
                  mapping: int = Mapping.MEAN, overlap: bool = False, useOrientation: bool = False,

@@ -48,18 +48,13 @@ def detect_rows(owner: Detector, image: ArrayLike, mask: Optional[ArrayLike]) ->
     return owner._detect(as_image(image), allowed)
 
 
-def detect(self: Detector, image: ArrayLike, mask: Optional[ArrayLike] = None) -> tuple[Any, ...]:
-    """Keypoints, as cv2.KeyPoint if cv2 is installed; for a list of images, a tuple for each.
-
-    :param mask: H x W uint8, 0 where no points may be found; a list for a list of images."""
+def detected(owner: Detector, image: ArrayLike, mask: Optional[ArrayLike]) -> tuple[Any, ...]:
+    """The method `detect` of all detectors and the extractor."""
     if are_images(image):
         given: Any = image
         masks: Any = [None] * len(given) if mask is None else mask
-        return tuple(method_detect(self, *each) for each in with_images(given, masks, 'masks'))
-    return array_to_keypoints(detect_rows(self, image, mask))
-
-
-method_detect = detect  #: of the detectors and the extractor
+        return tuple(detected(owner, *each) for each in with_images(given, masks, 'masks'))
+    return array_to_keypoints(detect_rows(owner, image, mask))
 
 
 @copied
@@ -68,8 +63,6 @@ class HessianDetector(_core.HessianDetector):
 
     Names, keywords and keypoints are those of ``cv2.iib``. ``IIB.createRecommended()`` combines it with its descriptor. Images are as in
     IIBDescriptorExtractor. Keypoints come strongest first; their size is twice the sigma of the blob in pixels, their angle -1."""
-
-    detect = method_detect
 
     @classmethod
     def create(cls, maxFeatures: int = 1000, threshold: float = 0.0, scales: int = 5, sigma: float = 2.2,
@@ -94,8 +87,6 @@ class NormalizedDetector(_core.NormalizedDetector):
 
     Names, keywords and keypoints are those of ``cv2.iib``. Descriptors are best computed on the plain image:
     ``IIB.createFor(NormalizedDetector(cv2.ORB_create()))`` does so. Images are as in IIBDescriptorExtractor."""
-
-    detect = method_detect
 
     def __init__(self, detector: Any, sigma: float = 4.0) -> None:
         """Wraps a detector.

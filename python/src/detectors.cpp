@@ -49,6 +49,20 @@ std::vector<cv::KeyPoint> detect(const Detector& self, const cv::Mat& image, con
     return keypoints;
 }
 
+// In Python, since it takes lists of images too, and returns objects of cv2 if it is installed.
+nb::object detected(nb::handle self, nb::handle image, nb::handle mask)
+{
+    return nb::module_::import_("opencv_iib.detectors").attr("detected")(self, image, mask);
+}
+
+const char* const DETECT = "def detect(self, image: numpy.typing.ArrayLike, "
+                           "mask: typing.Optional[numpy.typing.ArrayLike] = None) -> tuple[typing.Any, ...]";
+
+const char* const DETECT_DOC =
+        R"(Keypoints, as cv2.KeyPoint if cv2 is installed; for a list of images, a tuple for each.
+
+:param mask: H x W uint8, 0 where no points may be found; a list for a list of images.)";
+
 void newHessian(HeldDetector<Hessian>* self, int maxFeatures, float threshold, int scales, float sigma,
         float normalizationSigma, int workingSize)
 {
@@ -70,6 +84,7 @@ void bindDetectors(nb::module_& m)
                    return Detector{cv::makePtr<ForeignDetector>(function, name)};
                })
             .def("_detect", &detect, WithoutGil())
+            .def("detect", &detected, nb::arg().none(), nb::arg().none(), nb::sig(DETECT), DETECT_DOC)
             .def(
                     "getDefaultName",
                     [](const Detector& self) { return std::string(self->getDefaultName()); },
