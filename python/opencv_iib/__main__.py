@@ -24,7 +24,8 @@ from opencv_iib._streams import STANDARD_OUTPUT, is_quiet, note, put, quiet
 from opencv_iib.align import INTERPOLATIONS, align
 from opencv_iib.colmap import hloc
 from opencv_iib.colmap.database import CAMERA_MODELS
-from opencv_iib.colmap.pipeline import PAIRS, VERIFIERS, Options, build_database
+from opencv_iib.colmap.pairs import PAIRS
+from opencv_iib.colmap.pipeline import VERIFIERS, Options, build_database
 from opencv_iib.demo import demo
 from opencv_iib.enums import AlignmentModel
 from opencv_iib.features import DETECTORS, FeatureOptions, preset_names
@@ -37,6 +38,7 @@ STATUS = ('status: 0; 1 for an error; 2 for a mistake in the command line; 3 whe
           'localized); 4 where only some images or pairs were found, or map or colmap left some out; 130 after Ctrl-C')
 SOME_FOUND, NONE_FOUND, MISTAKE = 4, 3, 2
 CAMERA = 'MODEL,WIDTH,HEIGHT,PARAMS'
+Add = Callable[..., Callable[..., Any]]  #: adds a command, see _parser
 
 
 class _Parser(argparse.ArgumentParser):
@@ -99,96 +101,11 @@ def _call(function: Callable[..., Any], arguments: argparse.Namespace, **more: A
     return function(**vars(arguments), **more)
 
 
-def _parser() -> _Parser:
-    parser = _Parser(prog='opencv-iib', description=__doc__, epilog='example: opencv-iib demo day.jpg night.jpg; ' + STATUS)
-    parser.add_argument('--version', action='version', version=f'opencv_iib {__version__}')
-    commands = parser.add_subparsers(dest='command', required=True)
-
-    def add(name: str, run: Callable[[argparse.Namespace], int], description: str, needed: str, example: str, *shared: str) -> Callable[..., Any]:
-        """Adds a command with options of SHARED, and returns what adds its others."""
-        command: argparse.ArgumentParser = commands.add_parser(
-            name, help=description, description=f'{description[0].upper()}{description[1:]}.', usage=f'opencv-iib {name} {needed} [options]',
-            epilog=f'example: opencv-iib {name} {example}', formatter_class=argparse.RawDescriptionHelpFormatter)
-        command.set_defaults(run=run)
-        command.add_argument('--quiet', action='store_true', help='print only errors')
-        for option in shared:
-            command.add_argument(option, **SHARED[option])
-        return command.add_argument
-
-    option = add('demo', _demo, 'match two images and write a picture', 'IMAGE IMAGE', 'day.jpg night.jpg --out matches.png', *FEATURES)
+def _add_demo(add: Add) -> None:
+    option = add('demo', _demo, 'match two images and write a picture', 'IMAGE IMAGE', 'day.jpg night.jpg --out matches.png', *FEATURES, points=1000)
     option('image_a')
     option('image_b')
     option('--out', default='opencv_iib_demo.png', help='picture to write (%(default)s)')
-    commands.choices['demo'].set_defaults(points=1000)
-
-    option = add('match', _match, 'match two images, or pairs of a list, to a fraction of a pixel', 'IMAGE IMAGE',
-                 'day.jpg night.jpg --out matches.json --camera PINHOLE,640,480,500,500,320,240', *FEATURES, '--workers')
-    option('pair', nargs='*', metavar='image', help='two images')
-    option('--pairs', metavar='LIST', help='instead, a file with two names a line: each pair is kept when it is done')
-    option('--images', metavar='FOLDER', help='folder that the names are relative to')
-    option('--out', default='matches.csv', help='file to write, a line a match; also .json and .npz, and - for standard output '
-           '(%(default)s); of a list a folder, or a file in .h5 or .hdf5')
-    option('--picture', help='picture to write')
-    option('--camera', dest='cameras', action='append', default=[], metavar=CAMERA, type=_value(Camera.parse),
-           help="find the pose too, with COLMAP's name and parameters of the camera; twice for two cameras")
-
-    option = add('align', _align, 'lay images onto a reference', 'REFERENCE IMAGES... --out FOLDER', 'noon.jpg webcam/ --out aligned --crop',
-                 *IMAGE, '--workers')
-    option('reference')
-    option('images', nargs='+', help='images of a plane, or from the same place: files, folders, patterns; finished ones are kept')
-    option('--out', required=True, help='folder to write; older results there are replaced')
-    option('--model', **_choice(AlignmentModel.__members__), default='AUTO', help='AUTO chooses the simplest true one (%(default)s)')
-    option('--chain', action='store_true', help='the images are a series: align those that do not match the reference through their neighbours')
-    option('--format', **_choice(FORMATS), help="of the files written (that of each image's file)")
-    option('--crop', action='store_true', help='write the part that all images show, instead of all that the reference shows')
-    option('--interpolation', **_choice(INTERPOLATIONS), default='LINEAR', help='(%(default)s)')
-
-    option = add('colmap', _colmap, 'describe and match a folder, for colmap mapper', 'IMAGES DATABASE',
-                 'photos/ database.db --pairs retrieval --camera-of drone=OPENCV,4000,3000,3100,3100,2000,1500,0,0,0,0',
-                 *FEATURES, '--workers', '--force')
-    option('images', help='folder of images')
-    option('database', help='file to write, or to update')
-    option('--camera-model', **_choice(CAMERA_MODELS), default='SIMPLE_RADIAL', help='(%(default)s)')
-    option('--focal', type=float, default=0, help='focal length in pixels, instead of EXIF')
-    option('--camera', metavar=CAMERA, help="COLMAP's name and parameters of all images' camera")
-    option('--camera-of', action='append', default=[], metavar=f'FOLDER={CAMERA}', help='camera of the images below a folder; may be repeated')
-    option('--share-cameras', action='store_true', help='one camera for images of one size and focal length')
-    option('--pairs', default='exhaustive', help=f'{", ".join(PAIRS)}, or a file with two names a line (%(default)s)')
-    option('--neighbours', type=int, default=20, metavar='N', help='of sequential, retrieval and gps (%(default)s)')
-    option('--ratio', type=float, default=.92, help='ratio test beside the cross-check (%(default)s; 1: none)')
-    option('--no-search', action='store_false', dest='search', help='do not search other zooms, rotations and tilts')
-    option('--verify', **_choice(VERIFIERS, str.lower), default='auto', help='two-view geometry (%(default)s)')
-    option('--scheduler', metavar='ADDRESS', help="use the workers of Dask's scheduler there")
-
-    option = add('hloc', _hloc, "write a database's keypoints and matches as hloc reads them", 'DATABASE FEATURES MATCHES PAIRS',
-                 'database.db features.h5 matches.h5 pairs.txt', '--force')
-    for name, text in (('database', 'what the command colmap wrote'), ('features', 'HDF5 file to write'), ('matches', 'HDF5 file to write'),
-                       ('pairs', 'list of pairs to write')):
-        option(name, help=text)
-
-    option = add('map', _map, 'make a map for localization of a COLMAP model', '--model MODEL --images FOLDER --out MAP',
-                 '--model sparse/0 --images photos/ --out map', '--images', '--points', '--lines', *IMAGE, '--workers', '--force')
-    option('--model', required=True, help='folder of a COLMAP model, binary or text')
-    option('--out', required=True, help='folder to write')
-    option('--orb-and-akaze', action='store_true', help="the paper's points and descriptor instead of the recommended ones")
-    commands.choices['map'].set_defaults(points=2000)
-
-    option = add('localize', _localize, 'find where images were taken', '--map MAP --images FOLDER --out OUT',
-                 '--map map --images evening/ --out poses.csv --sequence', '--map', '--camera', '--lines', *IMAGE, '--workers')
-    option('--images', required=True, help='folder of images, also in folders below it; or -: paths from standard input, a line each, answered at once '
-           'by a line on standard output')
-    option('--out', help='folder to write, older results there are replaced; or X.csv or - for a table alone')
-    option('--sequence', action='store_true', help='images follow each other: look for each near the previous one')
-    option('--pictures', action='store_true', help='write each image with the points that agree')
-    option('--imu', metavar='IMU.CSV', help="smooth poses by an IMU, EuRoC's file; images must be named by their times")
-    option('--imu-from-camera', type=_value(parse_pose), metavar='TX,TY,TZ,QX,QY,QZ,QW', default=np.eye(4),
-           help="pose of the camera in the IMU's axes (0,0,0,0,0,0,1)")
-
-    option = add('update', _update, 'add the light of images to a map', '--map MAP --images FOLDER', '--map map --images evening/',
-                 '--map', '--images', '--camera', *IMAGE, '--workers', '--force')
-    option('--out', help='folder of the new map, instead of the old one')
-    parser.commands = commands.choices
-    return parser
 
 
 def _demo(arguments: argparse.Namespace) -> int:
@@ -199,6 +116,19 @@ def _demo(arguments: argparse.Namespace) -> int:
     note('demo: nothing agrees; do both images show the same place? Try --max-size 1000 if they are large, more --points, '
          'or --orientation if one of them is turned')
     return NONE_FOUND
+
+
+def _add_match(add: Add) -> None:
+    option = add('match', _match, 'match two images, or pairs of a list, to a fraction of a pixel', 'IMAGE IMAGE',
+                 'day.jpg night.jpg --out matches.json --camera PINHOLE,640,480,500,500,320,240', *FEATURES, '--workers')
+    option('pair', nargs='*', metavar='image', help='two images')
+    option('--pairs', metavar='LIST', help='instead, a file with two names a line: each pair is kept when it is done')
+    option('--images', metavar='FOLDER', help='folder that the names are relative to')
+    option('--out', default='matches.csv', help='file to write, a line a match; also .json and .npz, and - for standard output '
+           '(%(default)s); of a list a folder, or a file in .h5 or .hdf5')
+    option('--picture', help='picture to write')
+    option('--camera', dest='cameras', action='append', default=[], metavar=CAMERA, type=_value(Camera.parse),
+           help="find the pose too, with COLMAP's name and parameters of the camera; twice for two cameras")
 
 
 def _match(arguments: argparse.Namespace) -> int:
@@ -219,6 +149,19 @@ def _match(arguments: argparse.Namespace) -> int:
     return 0 if measured.found else NONE_FOUND
 
 
+def _add_align(add: Add) -> None:
+    option = add('align', _align, 'lay images onto a reference', 'REFERENCE IMAGES... --out FOLDER', 'noon.jpg webcam/ --out aligned --crop',
+                 *IMAGE, '--workers')
+    option('reference')
+    option('images', nargs='+', help='images of a plane, or from the same place: files, folders, patterns; finished ones are kept')
+    option('--out', required=True, help='folder to write; older results there are replaced')
+    option('--model', **_choice(AlignmentModel.__members__), default='AUTO', help='AUTO chooses the simplest true one (%(default)s)')
+    option('--chain', action='store_true', help='the images are a series: align those that do not match the reference through their neighbours')
+    option('--format', **_choice(FORMATS), help="of the files written (that of each image's file)")
+    option('--crop', action='store_true', help='write the part that all images show, instead of all that the reference shows')
+    option('--interpolation', **_choice(INTERPOLATIONS), default='LINEAR', help='(%(default)s)')
+
+
 def _align(arguments: argparse.Namespace) -> int:
     done = _call(align, arguments, model=AlignmentModel[vars(arguments).pop('model')])
     count = sum(bool(each.file) for each in done)
@@ -233,6 +176,25 @@ def _share(count: int, total: int) -> int:
     return 0 if count == total else SOME_FOUND if count else NONE_FOUND
 
 
+def _add_colmap(add: Add) -> None:
+    option = add('colmap', _colmap, 'describe and match a folder, for colmap mapper', 'IMAGES DATABASE',
+                 'photos/ database.db --pairs retrieval --camera-of drone=OPENCV,4000,3000,3100,3100,2000,1500,0,0,0,0',
+                 *FEATURES, '--workers', '--force')
+    option('images', help='folder of images')
+    option('database', help='file to write, or to update')
+    option('--camera-model', **_choice(CAMERA_MODELS), default='SIMPLE_RADIAL', help='(%(default)s)')
+    option('--focal', type=float, default=0, help='focal length in pixels, instead of EXIF')
+    option('--camera', metavar=CAMERA, help="COLMAP's name and parameters of all images' camera")
+    option('--camera-of', action='append', default=[], metavar=f'FOLDER={CAMERA}', help='camera of the images below a folder; may be repeated')
+    option('--share-cameras', action='store_true', help='one camera for images of one size and focal length')
+    option('--pairs', default='exhaustive', help=f'{", ".join(PAIRS)}, or a file with two names a line (%(default)s)')
+    option('--neighbours', type=int, default=20, metavar='N', help='of sequential, retrieval and gps (%(default)s)')
+    option('--ratio', type=float, default=.92, help='ratio test beside the cross-check (%(default)s; 1: none)')
+    option('--no-search', action='store_false', dest='search', help='do not search other zooms, rotations and tilts')
+    option('--verify', **_choice(VERIFIERS, str.lower), default='auto', help='two-view geometry (%(default)s)')
+    option('--scheduler', metavar='ADDRESS', help="use the workers of Dask's scheduler there")
+
+
 def _colmap(arguments: argparse.Namespace) -> int:
     with _client(vars(arguments).pop('scheduler')) as client:
         options = _options_of(Options, arguments, features=_options_of(FeatureOptions, arguments))
@@ -241,15 +203,44 @@ def _colmap(arguments: argparse.Namespace) -> int:
         return SOME_FOUND if counts['failed'] or 'lines left out' in counts else 0
 
 
+def _add_hloc(add: Add) -> None:
+    option = add('hloc', _hloc, "write a database's keypoints and matches as hloc reads them", 'DATABASE FEATURES MATCHES PAIRS',
+                 'database.db features.h5 matches.h5 pairs.txt', '--force')
+    for name, text in (('database', 'what the command colmap wrote'), ('features', 'HDF5 file to write'), ('matches', 'HDF5 file to write'),
+                       ('pairs', 'list of pairs to write')):
+        option(name, help=text)
+
+
 def _hloc(arguments: argparse.Namespace) -> int:
     _say_counts(arguments.matches, {'pairs': _call(hloc.export, arguments)})
     return 0
+
+
+def _add_map(add: Add) -> None:
+    option = add('map', _map, 'make a map for localization of a COLMAP model', '--model MODEL --images FOLDER --out MAP',
+                 '--model sparse/0 --images photos/ --out map', '--images', '--points', '--lines', *IMAGE, '--workers', '--force', points=2000)
+    option('--model', required=True, help='folder of a COLMAP model, binary or text')
+    option('--out', required=True, help='folder to write')
+    option('--orb-and-akaze', action='store_true', help="the paper's points and descriptor instead of the recommended ones")
 
 
 def _map(arguments: argparse.Namespace) -> int:
     counts = _call(localization.build, arguments)
     _say_counts(arguments.out, counts)
     return SOME_FOUND if counts['left out'] else 0
+
+
+def _add_localize(add: Add) -> None:
+    option = add('localize', _localize, 'find where images were taken', '--map MAP --images FOLDER --out OUT',
+                 '--map map --images evening/ --out poses.csv --sequence', '--map', '--camera', '--lines', *IMAGE, '--workers')
+    option('--images', required=True, help='folder of images, also in folders below it; or -: paths from standard input, a line each, answered at once '
+           'by a line on standard output')
+    option('--out', help='folder to write, older results there are replaced; or X.csv or - for a table alone')
+    option('--sequence', action='store_true', help='images follow each other: look for each near the previous one')
+    option('--pictures', action='store_true', help='write each image with the points that agree')
+    option('--imu', metavar='IMU.CSV', help="smooth poses by an IMU, EuRoC's file; images must be named by their times")
+    option('--imu-from-camera', type=_value(parse_pose), metavar='TX,TY,TZ,QX,QY,QZ,QW', default=np.eye(4),
+           help="pose of the camera in the IMU's axes (0,0,0,0,0,0,1)")
 
 
 def _localize(arguments: argparse.Namespace) -> int:
@@ -280,6 +271,12 @@ def _localize_stream(arguments: argparse.Namespace) -> int:
         print(line, flush=True)
         count, total = count + found, total + 1
     return _share(count, total)
+
+
+def _add_update(add: Add) -> None:
+    option = add('update', _update, 'add the light of images to a map', '--map MAP --images FOLDER', '--map map --images evening/',
+                 '--map', '--images', '--camera', *IMAGE, '--workers', '--force')
+    option('--out', help='folder of the new map, instead of the old one')
 
 
 def _update(arguments: argparse.Namespace) -> int:
@@ -313,6 +310,29 @@ def _say(text: str, out: str = '') -> None:
     """Prints a result: on standard error if standard output has the results themselves, nothing with --quiet."""
     if not is_quiet():
         note(text) if out in STANDARD_OUTPUT else put(text + '\n', sys.stdout)
+
+
+def _parser() -> _Parser:
+    parser = _Parser(prog='opencv-iib', description=__doc__, epilog='example: opencv-iib demo day.jpg night.jpg; ' + STATUS)
+    parser.add_argument('--version', action='version', version=f'opencv_iib {__version__}')
+    commands = parser.add_subparsers(dest='command', required=True)
+
+    def add(name: str, run: Callable[[argparse.Namespace], int], description: str, needed: str, example: str, *shared: str,
+            **defaults: Any) -> Callable[..., Any]:
+        """Adds a command with options of SHARED, and returns what adds its others. :param defaults: of these options."""
+        command: argparse.ArgumentParser = commands.add_parser(
+            name, help=description, description=f'{description[0].upper()}{description[1:]}.', usage=f'opencv-iib {name} {needed} [options]',
+            epilog=f'example: opencv-iib {name} {example}', formatter_class=argparse.RawDescriptionHelpFormatter)
+        command.add_argument('--quiet', action='store_true', help='print only errors')
+        for option in shared:
+            command.add_argument(option, **SHARED[option])
+        command.set_defaults(run=run, **defaults)
+        return command.add_argument
+
+    for add_command in (_add_demo, _add_match, _add_align, _add_colmap, _add_hloc, _add_map, _add_localize, _add_update):
+        add_command(add)
+    parser.commands = commands.choices
+    return parser
 
 
 def _parsed(parser: _Parser, words: Sequence[str]) -> argparse.Namespace:

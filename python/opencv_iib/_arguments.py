@@ -55,6 +55,10 @@ def number(value: Any, name: str) -> float:
     return float(value)
 
 
+def numbers(values: Iterable[Any], name: str) -> list[float]:
+    return [number(value, name) for value in sequence(values, name, 'numbers')]
+
+
 MAX_COUNT = 1 << 30  # fits in the int of a detector
 
 

@@ -7,16 +7,14 @@ from typing import Any, Iterator, Optional
 
 import numpy as np
 
-from opencv_iib._files import read_bytes
-
 # Numbers of TIFF's and EXIF's tags.
 PHOTOMETRIC, SAMPLES, ORIENTATION = 0x0106, 0x0115, 0x0112
 EXIF_IFD, FOCAL_LENGTH, FOCAL_LENGTH_35MM, PLANE_X_RESOLUTION, PLANE_UNIT = 0x8769, 0x920A, 0xA405, 0xA20E, 0xA210
 MILLIMETRES = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # of EXIF's units of resolution
 GPS_IFD, LATITUDE_REF, LATITUDE, LONGITUDE_REF, LONGITUDE, ALTITUDE_REF, ALTITUDE = 0x8825, 1, 2, 3, 4, 5, 6
 EARTH = 6371000  # metres, the radius
-ASCII, SHORT, RATIONAL, DOUBLE = 2, 3, 5, 12  # TIFF's types
-FORMS = {1: 'B', ASCII: 's', SHORT: 'H', 4: 'I', RATIONAL: 'II', DOUBLE: 'd', 16: 'Q', 18: 'Q'}  #: of a value, by the type; as in struct
+ASCII, SHORT, RATIONAL = 2, 3, 5  # TIFF's types
+FORMS = {1: 'B', ASCII: 's', SHORT: 'H', 4: 'I', RATIONAL: 'II', 16: 'Q', 18: 'Q'}  #: of a value, by the type; as in struct
 MIRRORED = 2, 4, 5, 7  #: EXIF's orientations of images that are stored mirrored
 START_OF_SCAN, APP1 = 0xda, 0xe1  # JPEG's markers
 TIFF = (b'II*\0', b'MM\0*', b'II+\0', b'MM\0+')  #: first bytes of TIFF files; the last two have offsets of 64 bits
@@ -62,7 +60,7 @@ def _exif(data: bytes) -> bytes:
 
 
 def _directory(tiff: bytes, pointer: int = 0) -> dict[int, Any]:
-    """The entries of the first directory of a TIFF, or of the directory that its entry `pointer` leads to, by their tags: a list of finite
+    """The entries of the first directory of a TIFF, or of the directory that its entry `pointer` leads to, by their tags: a list of
     numbers, or a text. Empty for a damaged directory."""
     order, (counted, word, room) = '<' if tiff[:1] == b'I' else '>', ('Q', 'Q', 8) if tiff[:4] in TIFF[2:] else ('H', 'I', 4)
 
@@ -80,7 +78,7 @@ def _directory(tiff: bytes, pointer: int = 0) -> dict[int, Any]:
                 values: Any = unpacked(form, entry + 4 + room if struct.calcsize(order + form) <= room else unpacked(word, entry + 4 + room)[0])
                 if kind == RATIONAL:
                     values = [above / below if below else 0 for above, below in zip(values[::2], values[1::2])]
-                if length and np.isfinite(values if kind == DOUBLE else 0).all():
+                if length:
                     found[tag] = values[0].split(b'\0')[0].decode('latin-1').strip() if kind == ASCII else values
     except struct.error:
         return {}
@@ -115,14 +113,14 @@ def exif_focal_length(data: bytes, width: int, height: int) -> Optional[float]:
     return pixels if 0 < pixels < 1e9 else None
 
 
-def gps_place(path: str) -> Optional[np.ndarray]:
+def gps_place(data: bytes) -> Optional[np.ndarray]:
     """The place of an image file's EXIF data in metres: on the Earth's sphere from its centre, and the height (NaN without one). None without a
     place, and for 0, 0, which cameras without a signal write."""
     try:
-        gps = _directory(_exif(read_bytes(path)), GPS_IFD)
+        gps = _directory(_exif(data), GPS_IFD)
         latitude, longitude = (np.radians(np.dot(gps[tag], (1, 1 / 60, 1 / 3600)) * (-1 if gps.get(ref) in ('S', 'W') else 1))
                                for tag, ref in ((LATITUDE, LATITUDE_REF), (LONGITUDE, LONGITUDE_REF)))
-    except (KeyError, TypeError, ValueError, OSError):
+    except (KeyError, TypeError, ValueError):
         return None
     height = _number(gps, ALTITUDE, np.nan) * (-1 if _number(gps, ALTITUDE_REF, 0) == 1 else 1)
     if not (latitude or longitude):

@@ -1,7 +1,9 @@
 """Writes files and folders: each file as a whole, by one process at a time, and nothing of the user's is lost."""
 from __future__ import annotations
 
+import csv
 import glob
+import io
 import json
 import os
 import re
@@ -93,7 +95,14 @@ def check_images(*paths: Path) -> None:
 
 def check_is_folder(path: Path) -> None:
     if not os.path.isdir(os.fspath(path)):
-        raise MissingFile(f'there is no folder {os.fspath(path)}')
+        raise MissingFile(f'{os.fspath(path)} is a file: give a folder' if os.path.exists(path) else f'there is no folder {os.fspath(path)}')
+
+
+def csv_bytes(rows: Iterable[Iterable[Any]]) -> bytes:
+    """A table as CSV; names of files that are not UTF-8 are escaped."""
+    text = io.StringIO(newline='')
+    csv.writer(text).writerows(rows)
+    return text.getvalue().encode(errors='backslashreplace')
 
 
 def write_whole(path: str, content: bytes) -> None:
@@ -166,7 +175,10 @@ class Results(AbstractContextManager['Results']):
         self.folder, self._command = os.path.realpath(out), command
         self.written: set[str] = set()  #: names of files, with '/'
         self._adding, self._record = threading.Lock(), os.path.join(self.folder, RECORD)
-        by, listed = _recorded(self._record)
+        by, listed = None, set[str]()
+        with suppress(OSError, ValueError), open(self._record, encoding='ascii') as file:
+            by, *names = [json.loads(line) for line in file if line.endswith('\n')]  # the last one may be cut off
+            listed = set(names)
         if by not in (None, command):
             raise FileExistsError(f'{out} holds results of {by}: choose another folder')
         whole = listed | {RECORD}
@@ -213,14 +225,6 @@ def _files_below(folder: str) -> list[str]:
     """Names of files below a folder, relative to it, with '/', without links."""
     found = [os.path.relpath(os.path.join(root, name), folder).replace(os.sep, '/') for root, _, files in os.walk(folder) for name in files]
     return [name for name in found if not os.path.islink(os.path.join(folder, name))]
-
-
-def _recorded(record: str) -> tuple[Any, set[str]]:
-    """The command of a record, and its files; None and no files without a record."""
-    with suppress(OSError, ValueError), open(record, encoding='ascii') as file:
-        command, *names = [json.loads(line) for line in file if line.endswith('\n')]  # the last one may be cut off
-        return command, set(names)
-    return None, set()
 
 
 def read_bytes(path: Path) -> bytes:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import hashlib
 import os
 from typing import Any, Iterable, Optional, Sequence
 
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from opencv_iib._arguments import InvalidOption, MissingFile, Path
 from opencv_iib._exif import MIRRORED, TIFF, exif_orientation
 from opencv_iib._files import read_bytes
-from opencv_iib._images import decode, decode_all, decode_first, reduced, resized_mask, stamp
+from opencv_iib._images import decode, decode_all, decode_first, reduced, resized_mask
 from opencv_iib._tiff import Pages
 
 
@@ -81,7 +82,8 @@ class Masks:
         return path if os.path.exists(path) else ''
 
     def stamp(self, path: str, name: str) -> str:
-        return ' '.join(map(stamp, filter(None, (path, self.file(name)))))
+        """Hashes of the content of an image's file and its mask; '' for one that cannot be read."""
+        return ' '.join(map(_stamp, filter(None, (path, self.file(name)))))
 
     def check(self, names: Iterable[str]) -> list[str]:
         """:return: the files of the images' masks. :raises InvalidOption: for a folder without any of them."""
@@ -104,6 +106,12 @@ class Masks:
         if mask.shape != image.shape[:2]:
             raise InvalidOption(f'its mask {path} has {mask.shape[1]} x {mask.shape[0]} pixels, and the image {image.shape[1]} x {image.shape[0]}')
         return mask
+
+
+def _stamp(path: str) -> str:
+    with contextlib.suppress(OSError, ValueError):
+        return hashlib.blake2b(read_bytes(path), digest_size=16).hexdigest()
+    return ''
 
 
 def check_sizes(folder: Path, names: Sequence[str], masks: Masks, camera: Any) -> None:

@@ -12,11 +12,12 @@ import numpy.typing
 
 import opencv_iib.enums
 from opencv_iib import _core
-from opencv_iib._arguments import integer, number
+from opencv_iib._arguments import integer, integers, number, numbers
 
 # How arguments are checked, by their annotations; others are passed on as they are. Returned numbers become enums where annotated so.
-CHECKS = {'int': 'integer({0}, {0!r})', 'float': 'number({0}, {0!r})', 'bool': 'bool({0})'}
-NAMES = {'integer': integer, 'number': number, 'typing': typing, 'numpy': numpy, 'opencv_iib': opencv_iib}
+CHECKS = {'int': 'integer({0}, {0!r})', 'float': 'number({0}, {0!r})', 'bool': 'bool({0})', 'typing.SupportsIndex': 'integer({0}, {0!r}, 64)',
+          'typing.Sequence[float]': 'numbers({0}, {0!r})', 'typing.Sequence[typing.SupportsIndex]': 'integers({0}, {0!r}, 64)'}
+NAMES = {'integer': integer, 'integers': integers, 'number': number, 'numbers': numbers, 'typing': typing, 'numpy': numpy, 'opencv_iib': opencv_iib}
 
 
 def function_of(method: Any, signature: str, doc: str) -> Any:

@@ -5,7 +5,7 @@ import contextlib
 import sys
 import time
 from datetime import timedelta
-from typing import Iterable, Iterator, Optional, TextIO, TypeVar
+from typing import Iterable, Iterator, Optional, TypeVar
 
 from opencv_iib._streams import is_quiet, put
 
@@ -13,17 +13,13 @@ T = TypeVar('T')
 
 
 class Progress:
-    """Counts steps on `stream` (standard error): rewritten in place on a terminal, a line each 30 seconds elsewhere."""
+    """Counts steps on standard error: rewritten in place on a terminal, a line each 30 seconds elsewhere."""
 
-    def __init__(self, title: str, total: Optional[int], done: int = 0, stream: Optional[TextIO] = None) -> None:
+    def __init__(self, title: str, total: Optional[int], done: int = 0) -> None:
         self.title, self.total, self.first, self.done = title, total, done, done
-        self.stream = sys.stderr if stream is None else stream
-        self.live = False
-        if is_quiet():
-            self.stream = None
-        elif self.stream is not None:
-            with contextlib.suppress(ValueError):  # closed
-                self.live = self.stream.isatty()
+        self.stream, self.live = None if is_quiet() else sys.stderr, False
+        with contextlib.suppress(ValueError):  # closed
+            self.live = self.stream is not None and self.stream.isatty()
         self.start = self.shown = time.monotonic()
 
     def step(self, count: int = 1) -> None:

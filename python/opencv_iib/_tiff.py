@@ -7,8 +7,9 @@ from typing import Any, Callable, NamedTuple, Sequence
 
 import numpy as np
 
-from opencv_iib._exif import ASCII, DOUBLE, PHOTOMETRIC, SHORT
+from opencv_iib._exif import ASCII, PHOTOMETRIC, SHORT
 
+DOUBLE = 12  # TIFF's type
 # GeoTIFF's tags and their types: size of a pixel in metres, tie points of pixels and the Earth, or a matrix for both; keys of the coordinates.
 PIXEL_SCALE, TIE_POINTS, TO_MODEL, *GEO_KEYS = 33550, 33922, 34264, 34735, 34736, 34737
 GEO = {PIXEL_SCALE: DOUBLE, TIE_POINTS: DOUBLE, TO_MODEL: DOUBLE, **dict(zip(GEO_KEYS, (SHORT, DOUBLE, ASCII)))}

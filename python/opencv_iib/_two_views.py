@@ -1,11 +1,7 @@
-"""Two-view geometry by MAGSAC or COLMAP's own program, and whether two images show the same."""
+"""Two-view geometry by MAGSAC, and whether two images show the same."""
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-import tempfile
-from typing import Iterable, Optional
+from typing import Optional
 
 import numpy as np
 
@@ -15,58 +11,26 @@ from opencv_iib.geometry import logFalseAlarms
 MIN_INLIERS = 15  # COLMAP's
 
 
-def magsac(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5) -> tuple[np.ndarray, Optional[np.ndarray]]:
-    """Whether each match agrees with a fundamental matrix, and that matrix (3 x 3; None if it is not significant).
+def magsac(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5, epipolar: bool = True) -> tuple[np.ndarray, Optional[np.ndarray]]:
+    """Whether each match agrees with a fundamental matrix or a homography, and that matrix (3 x 3; None if it is not significant).
     :param points_a: M x 2, pixels of the first image; so are `points_b` of the second.
-    :param threshold: pixels from the epipolar line."""
+    :param threshold: pixels from the epipolar line, or from the place."""
     import cv2
     none = np.zeros(len(points_a), bool)
-    if len(points_a) < MIN_INLIERS:
-        return none, None
+    a, b = (np.ascontiguousarray(points, np.float64) for points in (points_a, points_b))
+    least = MIN_INLIERS if epipolar else 4
     try:
-        matrix, mask = cv2.findFundamentalMat(np.ascontiguousarray(points_a, np.float64), np.ascontiguousarray(points_b, np.float64),
-                                              cv2.USAC_MAGSAC, threshold, .9999, 10000)
+        matrix, mask = ((None, None) if len(a) < least else cv2.findFundamentalMat(a, b, cv2.USAC_MAGSAC, threshold, .9999, 10000) if epipolar else
+                        cv2.findHomography(a, b, cv2.USAC_MAGSAC, threshold, maxIters=10000, confidence=.9999))
     except cv2.error:  # degenerate points, for some versions
         return none, None
     if matrix is None or matrix.shape != (3, 3) or mask is None:
         return none, None
     inliers = mask.ravel() > 0
-    certain = inliers.sum() >= MIN_INLIERS and logFalseAlarms(points_a, points_b, inliers, True, threshold) < _core.CERTAIN
+    certain = inliers.sum() >= least and logFalseAlarms(points_a, points_b, inliers, epipolar, threshold) < _core.CERTAIN
     return (inliers, matrix) if certain else (none, None)
 
 
-def show_the_same(points_a: np.ndarray, points_b: np.ndarray, threshold: float = 1.5) -> bool:
+def show_the_same(points_a: np.ndarray, points_b: np.ndarray) -> bool:
     """Whether the matches that agree with a fundamental matrix or a homography are significant."""
-    import cv2
-    if magsac(points_a, points_b, threshold)[0].any():
-        return True
-    if len(points_a) < 4:
-        return False
-    try:
-        _, mask = cv2.findHomography(np.ascontiguousarray(points_a, np.float64), np.ascontiguousarray(points_b, np.float64),
-                                     cv2.USAC_MAGSAC, threshold, maxIters=10000, confidence=.9999)
-    except cv2.error:  # degenerate points, for some versions
-        return False
-    return mask is not None and logFalseAlarms(points_a, points_b, mask, False, threshold) < _core.CERTAIN
-
-
-def colmap_binary() -> Optional[str]:
-    return shutil.which('colmap')
-
-
-def matches_importer(binary: str, database: str, pairs: Iterable[tuple[str, str]]) -> None:
-    """Has COLMAP verify the matches of a database. :raises RuntimeError: with the program's last lines, if it fails."""
-    with tempfile.NamedTemporaryFile('w', suffix='.txt', encoding='utf-8', delete=False) as file:
-        for a, b in pairs:
-            file.write(f'{a} {b}\n')
-    try:
-        def run(*arguments: str) -> subprocess.CompletedProcess[str]:
-            return subprocess.run([binary, 'matches_importer', *arguments], capture_output=True, text=True,
-                                  env={**os.environ, 'QT_QPA_PLATFORM': 'offscreen'})
-        gpu = 'FeatureMatching' if '--FeatureMatching.use_gpu' in run('--help').stdout else 'SiftMatching'
-        done = run('--database_path', database, '--match_list_path', file.name, '--match_type', 'pairs', f'--{gpu}.use_gpu', '0')
-        if done.returncode:
-            tail = '\n'.join((done.stdout + done.stderr).splitlines()[-5:])
-            raise RuntimeError(f'colmap matches_importer failed:\n{tail}')
-    finally:
-        os.unlink(file.name)
+    return any(magsac(points_a, points_b, epipolar=epipolar)[0].any() for epipolar in (True, False))

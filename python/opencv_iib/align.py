@@ -1,29 +1,27 @@
 """Aligns images of one place under changed illumination with a reference: pictures, a table and a page to compare them."""
 from __future__ import annotations
 
-import csv
 import glob
-import html
-import io
 import itertools
 import json
 import os
 from typing import Any, Callable, Iterable, NamedTuple, Optional, Sequence
-from urllib.parse import quote
 
 import numpy as np
 from numpy.typing import NDArray
 
 from opencv_iib import __version__
+from opencv_iib._align_page import PREVIEWS, html_page
 from opencv_iib._arguments import InvalidOption, MissingFile, Path, check_choice, sequence
-from opencv_iib._files import Results, check_folder, check_images, is_in, is_same, write_whole
+from opencv_iib._files import Results, check_folder, check_images, csv_bytes, is_in, is_same, write_whole
 from opencv_iib._image_file import ImageFile, Masks
-from opencv_iib._images import FORMATS, can_be, find_images, holds, import_cv2, in_8_bits, in_order, reduced, write_picture
+from opencv_iib._image_names import find_images, in_order
+from opencv_iib._images import FORMATS, can_be, holds, import_cv2, in_8_bits, reduced, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib._tiff import geo_of_part
-from opencv_iib._upright import Turn, upright
+from opencv_iib._orientation import Turn, upright
 from opencv_iib.enums import AlignmentModel
 from opencv_iib.features import check_max_size
 from opencv_iib.geometry import ImageAligner
@@ -32,24 +30,8 @@ from opencv_iib.views import rotation_and_scale
 CORNERS = ('top_left', 'top_right', 'bottom_right', 'bottom_left')
 HEADER = ['image', 'verdict', 'matches', *(f'error_{corner}' for corner in CORNERS),
           *(f't{row}{column}' for row in '123' for column in '123'), 'file', 'model']
-PAGE = '''<!DOCTYPE html>
-<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Aligned with {reference}</title>
-<style>body {{ font: 16px sans-serif; margin: 2em auto; max-width: {width}px; padding: 0 1em; background: #1c1a20; color: #ebebeb }}
-h1, p, figcaption {{ overflow-wrap: anywhere }} figure {{ position: relative; margin: 0 0 2em }} img {{ display: block; width: 100%; height: auto }}
-div {{ position: relative }} div img + img {{ position: absolute; top: 0; clip-path: inset(0 0 0 50%) }}
-input {{ width: 100%; margin: .5em 0 }}</style>
-<h1>Aligned with {reference}</h1>
-{figures}
-<script>for (const slider of document.querySelectorAll('input')) slider.oninput = () => slider.parentNode.querySelector(
-'img + img').style.clipPath = `inset(0 0 0 ${{slider.value}}%)`</script></html>
-'''
-FIGURE = '''<figure><div><img src="{reference}" alt="the reference" loading="lazy" width="{width}" height="{height}"><img src="{file}"
-alt="{name}, aligned" loading="lazy" width="{width}" height="{height}"></div>
-<input type="range" value="50" aria-label="border between the reference, left, and {name}">
-<figcaption>{name}: {verdict}</figcaption></figure>'''
 INTERPOLATIONS = ('NEAREST', 'LINEAR', 'CUBIC', 'LANCZOS4')  #: of cv2, by their names there
 STATE = 'align.json'  #: results and settings, which a later call reuses
-VIEWS = 'views'  #: folder of JPEG copies of pictures that browsers do not show
 WARPED = tuple(map(np.dtype, ('u1', 'u2', 'i2', 'f4', 'f8')))  #: types that cv2.warpPerspective takes
 LARGEST_SIDE = 32766  #: pixels that cv2.warpPerspective takes
 LONGEST_STEM = 200  #: bytes of a file's name, with room for a number and the suffix
@@ -138,52 +120,58 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
         raise ValueError(f'no image to align but the reference, {reference}')
     check_folder(out, (*paths, *masks.check([os.path.basename(path) for path in (reference, *paths)])))
     work = _Work(reference, options, masks, log)
-    settings = [*options, os.path.abspath(reference), work.stamp(reference), __version__]
-    stamps = {path: work.stamp(path) for path in paths}
-    stopped: Optional[BaseException] = None
     with Results(out, 'align') as results:
         work.place = results.place
-        done, old_part = _known(results.folder, settings, stamps)
-        known, names = list(done), _file_names(paths, done)
-        part, progress = None if crop else work.whole, Progress('aligning', len(paths), len(done))
-
-        def forget() -> None:
-            """Removes the state of an earlier call before its pictures are replaced by those of another part or other options."""
-            if part not in (None, old_part):
-                results.remove([STATE])
-
-        def do(job: Callable[[str], Aligned], paths: list[str]) -> None:
-            done.update(in_parallel(job, paths, threads))
-
-        def align_one(path: str) -> Aligned:
-            found = work.align(path, names[path], part)
-            progress.step()
-            return found
-        forget()
-        try:
-            do(align_one, [path for path in paths if path not in done])
-            if chain:
-                _chain(work, series, done, do)
-            part = part or _common(work.whole, done.values())
-        except (Exception, KeyboardInterrupt) as e:
-            if not done or part is None:
-                raise
-            stopped = e
-        progress.close()
-        forget()
-        for name in [done[path].file for path in known if part == old_part]:
-            for file in (name, f'{VIEWS}/{name}.jpg'):
-                if name and os.path.exists(os.path.join(results.folder, file)):
-                    results.place(file)
-        do(lambda path: work.write(done[path], names[path], part),
-           [path for path, each in done.items() if each.transform and each.file not in results.written])
-        ordered = [done[path] for path in paths if path in done]
-        _write_tables(results, work.write_reference(part), os.path.basename(reference), ordered, part)
-        state = {'settings': settings, 'part': part, 'images': [[stamps[each.name], each] for each in ordered if each.size]}
-        write_whole(results.place(STATE), json.dumps(state).encode())
+        done, stopped = _align_into(results, work, series, paths, threads)
     if stopped is not None:
         raise stopped
-    return ordered
+    return done
+
+
+def _align_into(results: Results, work: _Work, series: Sequence[str], paths: Sequence[str], threads: Threads
+                ) -> tuple[list[Aligned], Optional[BaseException]]:
+    """Aligns and writes images, and those before an error if their pictures can be written.
+    :param series: as in _chain; `paths` are those without the reference."""
+    settings, stamps = work.settings(), {path: work.stamp(path) for path in paths}
+    done, old_part = _known(results.folder, settings, stamps)
+    known, names = list(done), _file_names(paths, done)
+    part, progress = None if work.options.crop else work.whole, Progress('aligning', len(paths), len(done))
+    stopped: Optional[BaseException] = None
+
+    def drop_old_state() -> None:  # so that a killed call leaves no state that lists pictures of another part
+        if part not in (None, old_part):
+            results.remove([STATE])
+
+    def do(job: Callable[[str], Aligned], paths: list[str]) -> None:
+        done.update(in_parallel(job, paths, threads))
+
+    def align_one(path: str) -> Aligned:
+        found = work.align(path, names[path], part)
+        progress.step()
+        return found
+    drop_old_state()
+    try:
+        do(align_one, [path for path in paths if path not in done])
+        if work.options.chain:
+            _chain(work, series, done, do)
+        part = part or _common(work.whole, done.values())
+    except (Exception, KeyboardInterrupt) as e:
+        if not done or part is None:
+            raise
+        stopped = e
+    progress.close()
+    drop_old_state()
+    for name in [done[path].file for path in known if part == old_part]:
+        for file in (name, f'{PREVIEWS}/{name}.jpg'):
+            if name and os.path.exists(os.path.join(results.folder, file)):
+                results.place(file)
+    do(lambda path: work.write(done[path], names[path], part),
+       [path for path, each in done.items() if each.transform and each.file not in results.written])
+    ordered = [done[path] for path in paths if path in done]
+    _write_tables(results, work.write_reference(part), os.path.basename(work.path), ordered, part)
+    state = {'settings': settings, 'part': part, 'images': [[stamps[each.name], each] for each in ordered if each.size]}
+    write_whole(results.place(STATE), json.dumps(state).encode())
+    return ordered, stopped
 
 
 def _expanded(images: Sequence[Path], out: str, log: Callable[[str], None]) -> list[str]:
@@ -266,18 +254,9 @@ def _common(whole: list[int], images: Iterable[Aligned]) -> list[int]:
 def _write_tables(results: Results, reference: str, title: str, done: Sequence[Aligned], part: list[int]) -> None:
     """The table and the page."""
     ordered = sorted(done, key=lambda each: in_order(each.name))
-    table = io.StringIO(newline='')
-    csv.writer(table).writerows([HEADER, *map(_row, ordered)])
-
-    def shown(file: str) -> str:
-        view = f'{VIEWS}/{file}.jpg'
-        return quote(view if view in results.written else file)
-    width, height = part[2:]
-    figures = (FIGURE.format(reference=shown(reference), file=shown(each.file), name=html.escape(each.name), verdict=each, width=width, height=height)
-               if each.file else f'<p>{html.escape(each.name)}: {html.escape(each.verdict)}</p>' for each in ordered)
-    page = PAGE.format(reference=html.escape(title), width=width, figures='\n'.join(figures))
-    for name, text in (('transforms.csv', table.getvalue()), ('index.html', page)):
-        write_whole(results.place(name), text.encode(errors='backslashreplace'))
+    write_whole(results.place('transforms.csv'), csv_bytes([HEADER, *map(_row, ordered)]))
+    text = html_page(title, reference, [(each.name, str(each), each.file) for each in ordered], part[2], part[3], results.written)
+    write_whole(results.place('index.html'), text.encode(errors='backslashreplace'))
 
 
 def _file_names(paths: Sequence[str], known: dict[str, Aligned]) -> dict[str, str]:
@@ -294,7 +273,7 @@ def _file_names(paths: Sequence[str], known: dict[str, Aligned]) -> dict[str, st
     return names
 
 
-class _View:
+class _Compared:
     """An image, and its upright, perhaps reduced copy that is compared, with a mask of pixels that hold data."""
 
     def __init__(self, path: str, options: _Options, masks: Masks, factor: int = 0) -> None:
@@ -342,7 +321,7 @@ class _Work:
     place: Callable[[str], str]  #: the path of a file to write, by its name
 
     def __init__(self, reference: str, options: _Options, masks: Masks, log: Callable[[str], None]) -> None:
-        self._options, self._masks, self._log = options, masks, log
+        self.path, self.options, self._masks, self._log = reference, options, masks, log
         try:
             self._reference = self._view(reference)
         except (ValueError, OSError) as e:
@@ -356,8 +335,12 @@ class _Work:
         """As Masks.stamp."""
         return self._masks.stamp(path, os.path.basename(path))
 
-    def _view(self, path: str, factor: int = 0) -> _View:
-        view = _View(path, self._options, self._masks, factor)
+    def settings(self) -> list[Any]:
+        """What results depend on besides their images."""
+        return [*self.options, os.path.abspath(self.path), self.stamp(self.path), __version__]
+
+    def _view(self, path: str, factor: int = 0) -> _Compared:
+        view = _Compared(path, self.options, self._masks, factor)
         if view.left_out:
             self._log(f'{path}: {view.left_out} of its pages are left out, since they have another size or type than the first one')
         return view
@@ -366,28 +349,28 @@ class _Work:
         """:param name: of the picture, without suffix.
         :param part: rectangle of the reference to write: x, y, width, height; None: write nothing."""
         try:
-            view = self._view(path, self._reference.factor if self._options.model == AlignmentModel.TRANSLATION else 0)
+            view = self._view(path, self._reference.factor if self.options.model == AlignmentModel.TRANSLATION else 0)
         except (ValueError, OSError) as e:
             return Aligned(path, getattr(e, 'strerror', None) or str(e))
         aligned = self._aligned(self._aligner, self._reference, view, path)
         return aligned if part is None or not aligned.transform else self._written(view, aligned, name, part)
 
-    def _aligned(self, aligner: ImageAligner, onto: _View, view: _View, path: str) -> Aligned:
+    def _aligned(self, aligner: ImageAligner, onto: _Compared, view: _Compared, path: str) -> Aligned:
         found = aligner.align(view.grey, view.mask)
         if not found.found:
             return Aligned(path, found.reason, len(found.matches), size=view.size)
         transform = onto.matrix @ found.transform @ np.linalg.inv(view.matrix)
         transform /= transform[2, 2]
         errors = view.turn.corners(found.error.ravel()) * onto.factor
-        model = found.simplest if self._options.model == AlignmentModel.AUTO else AlignmentModel(self._options.model)
+        model = found.simplest if self.options.model == AlignmentModel.AUTO else AlignmentModel(self.options.model)
         return Aligned(path, 'aligned', len(found.matches), errors.tolist(), transform.ravel().tolist(), '', view.size,
                        *rotation_and_scale(np.linalg.inv(_derivative(found.transform, *np.array(view.grey.shape[::-1]) / 2))), model.name, found.note)
 
     def align_through(self, image: Aligned, other: Aligned) -> Aligned:
         """Aligns an image by its transform to another image and that image's transform to the reference; unchanged if there is none."""
         onto = self._view(other.name)
-        view = self._view(image.name, onto.factor if self._options.model == AlignmentModel.TRANSLATION else 0)
-        found = self._aligned(ImageAligner(onto.grey, self._options.model, onto.mask), onto, view, image.name)
+        view = self._view(image.name, onto.factor if self.options.model == AlignmentModel.TRANSLATION else 0)
+        found = self._aligned(ImageAligner(onto.grey, self.options.model, onto.mask), onto, view, image.name)
         if not found.transform:
             return image
         to_other, to_reference = (np.reshape(each.transform, (3, 3)) for each in (found, other))
@@ -402,14 +385,14 @@ class _Work:
 
     def write(self, aligned: Aligned, name: str, part: list[int]) -> Aligned:
         """Writes an image whose transform is known."""
-        return self._written(_View(aligned.name, self._options, Masks(None)), aligned, name, part)
+        return self._written(_Compared(aligned.name, self.options, Masks(None)), aligned, name, part)
 
     def write_reference(self, part: list[int]) -> str:
         """:return: the name of its file."""
         x, y, width, height = part
         return self._write(self._reference, [page[y:y + height, x:x + width] for page in self._reference.pages], 'reference', part)
 
-    def _written(self, view: _View, aligned: Aligned, name: str, part: list[int]) -> Aligned:
+    def _written(self, view: _Compared, aligned: Aligned, name: str, part: list[int]) -> Aligned:
         onto = np.array([[1, 0, -part[0]], [0, 1, -part[1]], [0, 0, 1]]) @ np.reshape(aligned.transform, (3, 3))
         try:
             file = self._write(view, [self._warped(view, page, onto, part[2:]) for page in view.pages], name, part)
@@ -417,24 +400,24 @@ class _Work:
             return aligned._replace(verdict=str(e), transform=())
         return aligned._replace(file=file)
 
-    def _write(self, view: _View, pages: Sequence[NDArray[Any]], name: str, part: list[int]) -> str:
+    def _write(self, view: _Compared, pages: Sequence[NDArray[Any]], name: str, part: list[int]) -> str:
         whole = len(pages) == 1 and holds(view.suffix, pages[0])
-        suffix = FORMATS[self._options.format] if self._options.format else view.suffix if whole else '.tif'
+        suffix = FORMATS[self.options.format] if self.options.format else view.suffix if whole else '.tif'
         file = name + suffix
         write_picture(self.place(file), *pages, no_data=view.no_data, geo=geo_of_part(self._reference.geo, part[0], part[1]))
         if suffix == '.tif' or pages[0].dtype != np.uint8:  # browsers do not show it, or too dark
             holes = None if pages[0].dtype == np.uint8 else view.holes(pages[0])
             shown = pages[0] if holes is None else np.where(holes, np.nan, pages[0])  # which the scale leaves out
             shown = shown if np.isfinite(shown).any() else np.zeros_like(shown, np.uint8)
-            write_picture(self.place(f'{VIEWS}/{file}.jpg'), in_8_bits(shown, True))
+            write_picture(self.place(f'{PREVIEWS}/{file}.jpg'), in_8_bits(shown, True))
         return file
 
-    def _warped(self, view: _View, page: NDArray[Any], onto: NDArray[Any], size: Sequence[int]) -> NDArray[Any]:
+    def _warped(self, view: _Compared, page: NDArray[Any], onto: NDArray[Any], size: Sequence[int]) -> NDArray[Any]:
         """A page in pixels of the part. Pixels beside the image, and those interpolated from pixels without data, get no_data, or 0."""
         cv2 = import_cv2()
 
         def warp(values: NDArray[Any]) -> NDArray[Any]:
-            warped: NDArray[Any] = cv2.warpPerspective(values, onto, tuple(size), flags=getattr(cv2, 'INTER_' + self._options.interpolation))
+            warped: NDArray[Any] = cv2.warpPerspective(values, onto, tuple(size), flags=getattr(cv2, 'INTER_' + self.options.interpolation))
             return warped if warped.ndim == values.ndim else warped[..., None]
         holes, values = view.holes(page), page
         if holes is not None:

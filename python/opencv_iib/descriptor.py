@@ -158,17 +158,6 @@ class IIBDescriptorExtractor(_core.IIBDescriptorExtractor):
         :param quads: Q x 5 int32: level, channel, row, column, bits to keep. Empty: all quads again."""
         self._setSelection(as_matrix(quads, 'the selection'))
 
-    def save(self, filename: Path) -> None:
-        """The same as write()."""
-        self.write(filename)
-
-    def write(self, fileName: Path) -> None:
-        """Writes the parameters, but not the detector, to a .yml, .xml or .json file, which read() and C++ read.
-
-        :raises opencv_iib.error: if the file cannot be written; an older one is kept. Also for a link that leads to no file, a folder, a
-            device or a pipe."""
-        self._save(fileName)
-
     def read(self, fileName: Path) -> None:
         """Reads a file of write() or C++, also packed by gzip."""
         name = os.fsdecode(fileName)

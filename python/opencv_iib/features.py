@@ -3,14 +3,13 @@ from __future__ import annotations
 
 import dataclasses
 import os
-import threading
 from typing import Any, Optional, Sequence
 
 import numpy as np
 
 from opencv_iib._arguments import InvalidOption, Path, check_choice, check_count, integer
 from opencv_iib._images import import_cv2, reduced, resized_mask
-from opencv_iib._upright import Turn, upright
+from opencv_iib._orientation import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import HessianDetector
 from opencv_iib.enums import Orientation, Preset
@@ -43,11 +42,6 @@ class FeatureOptions:
             name = getattr(self, field)
             object.__setattr__(self, field, getattr(name, 'name', str(name)).upper())
         object.__setattr__(self, 'mask', None if self.mask is None else os.fspath(self.mask))
-
-    @property
-    def are_recommended(self) -> bool:
-        """Whether these are the recommended chain's, for which matchViews exists."""
-        return (self.detector, self.preset, self.orientation, self.max_size) == ('HESSIAN', 'UNIVERSAL', False, 0)
 
     def check(self) -> None:
         """:raises InvalidOption: for the first wrong one, with the known ones."""
@@ -86,7 +80,7 @@ def check_max_size(max_size: int) -> None:
 
 
 class Features:
-    """Detects and describes. Threads may share it; each gets a detector of its own."""
+    """Detects and describes. Threads may share it."""
 
     def __init__(self, options: FeatureOptions) -> None:
         options.check()
@@ -98,18 +92,16 @@ class Features:
         if options.orientation:
             gradient = options.detector in WITHOUT_ANGLES
             self.extractor.setOrientation(Orientation.GRADIENT if gradient else Orientation.KEYPOINT)
-        self._local = threading.local()
-        self._local.detector = make_detector(options.detector, options.points)  # raises here, not at the first image
+        make_detector(options.detector, options.points)  # raises here, not at the first image
 
     def __call__(self, image: np.ndarray, orientation: int = 1, mask: Optional[np.ndarray] = None) -> tuple[np.ndarray, np.ndarray]:
         """:param orientation: EXIF's, of the image and the mask.
         :return: N x 7 float32 keypoints (see keypoints_to_array), strongest first, and N x bytes codes."""
         turn, image = Turn(orientation, *image.shape[1::-1]), upright(image, orientation)
-        if not hasattr(self._local, 'detector'):
-            self._local.detector = make_detector(self.options.detector, self.options.points)
+        detector = make_detector(self.options.detector, self.options.points)  # cv2's are not for several threads
         small = reduced(image, self.options.max_size)
         allowed = mask if mask is None else resized_mask(upright(mask, orientation), small)
-        found = sorted(detect(self._local.detector, small, allowed), key=lambda keypoint: -keypoint.response)[:self.options.points]
+        found = sorted(detect(detector, small, allowed), key=lambda keypoint: -keypoint.response)[:self.options.points]
         rows, codes = self.extractor.compute(small, keypoints_to_array(found))
         if small is not image:
             scale = np.array(image.shape[1::-1]) / small.shape[1::-1]

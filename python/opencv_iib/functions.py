@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib._arrays import as_image, as_mask
-from opencv_iib._upright import Turn, upright
+from opencv_iib._orientation import Turn, upright
 from opencv_iib.descriptor import IIBDescriptorExtractor
 from opencv_iib.detectors import detect_rows
 from opencv_iib.matcher import HierarchicalMatcher

@@ -12,15 +12,7 @@ from opencv_iib._arrays import as_array, as_image, as_mask, as_matrix
 from opencv_iib.enums import AlignmentModel
 
 
-class _Pose(NamedTuple):
-    found: bool
-    R: Any
-    t: Any
-    inliers: NDArray[np.uint8]
-    covariance: Any
-
-
-class RelativePose(_Pose):
+class RelativePose(NamedTuple('_Pose', [('found', bool), ('R', Any), ('t', Any), ('inliers', NDArray[np.uint8]), ('covariance', Any)])):
     """The result of :func:`findRelativePose`, a tuple (found, R, t, inliers, covariance).
 
     R is 3 x 3, from the axes of camera 1 to those of camera 2; t is 3 x 1, the direction of the translation in the axes of camera 2, of length 1;
@@ -31,14 +23,7 @@ class RelativePose(_Pose):
     reason: str = ''  #: why no pose is found, a sentence
 
 
-class _Alignment(NamedTuple):
-    found: bool
-    transform: Any
-    error: Any
-    matches: NDArray[np.float32]
-
-
-class Alignment(_Alignment):
+class Alignment(NamedTuple('_Alignment', [('found', bool), ('transform', Any), ('error', Any), ('matches', NDArray[np.float32])])):
     """The result of :func:`alignImages`, a tuple (found, transform, error, matches).
 
     The transform is 3 x 3, from pixels of the image to pixels of the reference; the error 4 x 1, standard deviations of the places of the

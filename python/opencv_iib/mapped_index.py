@@ -11,7 +11,7 @@ from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, integers
 from opencv_iib._arrays import ArrayOrArrays, as_arrays, as_codes
 from opencv_iib._copies import copied
-from opencv_iib.matcher import AT_ONCE, check_padding
+from opencv_iib.matcher import AT_ONCE
 
 
 @copied
@@ -44,22 +44,6 @@ class MappedIndex(_core.MappedIndex):
         cls._create(folder, integers(levelSizes, 'levelSizes'))
         return cls(folder)
 
-    def imageOf(self, row: int) -> int:
-        """The image of a row."""
-        return self._imageOf(integer(row, 'row', 64))
-
-    def firstRow(self, image: int) -> int:
-        """The first row of an image."""
-        return self._firstRow(integer(image, 'image', 64))
-
-    def descriptors(self, image: int) -> NDArray[np.uint8]:
-        """A copy of the descriptors of an image."""
-        return self._descriptorsOf(integer(image, 'image', 64))
-
-    def remove(self, images: Sequence[int]) -> None:
-        """Hides images from all searches; their codes stay on the disk."""
-        self._remove(integers(images, 'images', 64))
-
     def add(self, descriptors: ArrayOrArrays) -> None:
         """Adds the descriptors of one image (an array) or of several (a sequence of arrays), and commits them.
 
@@ -74,7 +58,6 @@ class MappedIndex(_core.MappedIndex):
         :return: rows (int64) and distances (int32), queries x k, -1 where there are fewer.
         :raises opencv_iib.error: also for a k of more than there are codes that would fill the memory."""
         queries, k, where = as_codes(queryDescriptors, 'queries'), integer(k, 'k'), -1 if segment is None else integer(segment, 'segment')
-        check_padding(len(queries), k, self.rows)
         parts = [self._search(queries[first:first + AT_ONCE], k, where) for first in range(0, max(1, len(queries)), AT_ONCE)]
         rows, distances = (np.concatenate(arrays).reshape(-1, k) for arrays in zip(*parts))
         return rows, distances

@@ -15,11 +15,11 @@ import numpy as np
 from opencv_iib import __version__
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._camera import AnyCamera, Camera, as_camera
-from opencv_iib._files import Results, check_folder, check_is_folder, check_outputs, only_writer, output_file, remove_parts, replaced, write_whole
+from opencv_iib._files import Results, check_folder, check_is_folder, check_outputs, csv_bytes, only_writer, output_file, remove_parts, replaced, write_whole
 from opencv_iib._hdf5 import import_h5py, new_hdf5
 from opencv_iib._image_file import Masks, check_sizes
-from opencv_iib._images import find_images
-from opencv_iib._pairs import check_list, pair_name, tiles
+from opencv_iib._image_names import find_images
+from opencv_iib._pair_list import check_list, pair_name, tiles
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._partial import LOGS, close_partial, open_partial
 from opencv_iib._progress import with_progress
@@ -92,9 +92,8 @@ class _Folder(Results):
     def export(self, state: _State, removed: Collection[str]) -> None:
         for name, content in state.contents():
             write_whole(self.place(name + '.csv'), content)
-        text = io.StringIO(newline='')
-        csv.writer(text).writerows([COLUMNS, *(row for name, row in {**self.rows, **state.rows()}.items() if name not in removed)])
-        write_whole(self.place(TABLE), text.getvalue().encode())
+        rows = {**self.rows, **state.rows()}
+        write_whole(self.place(TABLE), csv_bytes([COLUMNS, *(row for name, row in rows.items() if name not in removed)]))
         self.written -= {name + '.csv' for name in removed}
 
 

@@ -18,7 +18,7 @@ from opencv_iib._image_file import ImageFile, Masks
 from opencv_iib._images import check_picture, import_cv2, write_picture
 from opencv_iib._streams import is_open_file
 from opencv_iib._two_views import show_the_same
-from opencv_iib._upright import Turn, upright
+from opencv_iib._orientation import Turn, upright
 from opencv_iib.enums import Orientation
 from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.functions import match
@@ -204,11 +204,12 @@ def measure(first: View, second: View, features: Features) -> Measured:
     pair = _Pair(first, second)
     measured = pair.measured((first.rows, second.rows), (first.codes, second.codes), match(first.codes, second.codes).pairs)
     certain = measured.found and (measured.pose is not None or measured.agree.sum() >= CERTAIN) and (measured.rotation, measured.scale) == (0, 1)
-    if features.options.orientation or certain:
+    options = features.options
+    if options.orientation or certain:
         return measured
-    if not features.options.are_recommended:
+    if (options.detector, options.preset, options.max_size) != ('HESSIAN', 'UNIVERSAL', 0):  # matchViews is of the recommended chain
         return measured if measured.found else pair.rotated(features, measured)
-    by_views = pair.by_views(features.options.points)
+    by_views = pair.by_views(options.points)
     return by_views if by_views.found and (not measured.found or by_views.agree.sum() > measured.agree.sum()) else measured
 
 
@@ -236,10 +237,9 @@ class _Pair:
         a, b = (some[propagated.matches[:, side]] for side, some in enumerate(codes))
         bits = np.unpackbits(a ^ b, axis=1).sum(axis=1, dtype=np.int32)
         matches = RefinedMatches(*propagated[1:])
-        found = pose.found if pose is not None else show_the_same(matches.points1, matches.points2)
         agree = pose.inliers.ravel() > 0 if pose is not None else matches.similarities >= 0
         view = similarity(matches.points1[agree], matches.points2[agree])
-        return Measured(matches, bits, pose, found, view, *rotation_and_scale(self._upright(view)))
+        return self._result(matches, bits, pose, pose is None and show_the_same(matches.points1, matches.points2), view)
 
     def by_views(self, points: int) -> Measured:
         """The result of simulated views, of rotated, zoomed and tilted images; bits are -1, since matches have no keypoints."""
@@ -248,12 +248,12 @@ class _Pair:
         matches = RefinedMatches(*(each[visible] for each in found[2:6]))
         pose = self._pose(matches.points1, matches.points2) if self.lenses else None
         view = np.eye(3) if found.view is None else found.view
-        return Measured(matches, np.full(len(matches.points1), -1, np.int32), pose, found.found if pose is None else pose.found,
-                        view, *rotation_and_scale(self._upright(view)))
+        return self._result(matches, np.full(len(matches.points1), -1, np.int32), pose, found.found, view)
 
-    def _upright(self, view: np.ndarray) -> np.ndarray:
-        """The map between upright images of a map between stored ones."""
-        return np.linalg.inv(self._turns[1].matrix) @ view @ self._turns[0].matrix
+    def _result(self, matches: RefinedMatches, bits: np.ndarray, pose: Optional[RelativePose], found: bool, view: np.ndarray) -> Measured:
+        """:param found: without a pose. :param view: between stored images."""
+        upright_view = np.linalg.inv(self._turns[1].matrix) @ view @ self._turns[0].matrix
+        return Measured(matches, bits, pose, found if pose is None else pose.found, view, *rotation_and_scale(upright_view))
 
     def rotated(self, features: Features, otherwise: Measured) -> Measured:
         """The result of features of any detector, rotated by one angle."""

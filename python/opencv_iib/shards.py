@@ -20,7 +20,6 @@ from opencv_iib._arguments import Path, integer
 from opencv_iib._arrays import as_array
 from opencv_iib._files import only_writer
 from opencv_iib.mapped_index import MappedIndex
-from opencv_iib.matcher import check_padding
 
 Arrays = tuple[np.ndarray, np.ndarray]
 
@@ -38,7 +37,7 @@ def write(folder: Path, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per
     :raises BlockingIOError: if another process is writing it."""
     if integer(rows_per_shard, 'rows_per_shard', 64) < 1:
         raise ValueError(f'rows_per_shard is {rows_per_shard}: at least 1 is needed')
-    if not isinstance(codes, np.ndarray) and not hasattr(codes, '__iter__'):
+    if not np.iterable(codes):
         raise TypeError(f'codes: an array, or a sequence of arrays is needed, not {codes!r}')
     folder = os.path.realpath(folder)  # links cannot be replaced
     if os.path.exists(folder) and (not os.path.isdir(folder) or os.listdir(folder)):
@@ -53,34 +52,29 @@ def write(folder: Path, codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per
 
 
 def _images(codes: Union[np.ndarray, Iterable[np.ndarray]], rows_per_shard: int) -> Iterator[np.ndarray]:
+    parts: Iterable[np.ndarray] = codes
     if isinstance(codes, np.ndarray):
-        _check_rows(codes)
-        for first in range(0, max(len(codes), 1), rows_per_shard):
-            yield as_array(codes[first:first + rows_per_shard], 'codes')
-    else:
-        for image in codes:
-            yield _check_rows(as_array(image, 'codes'))
-
-
-def _check_rows(codes: np.ndarray) -> np.ndarray:
-    if codes.ndim != 2:
-        raise ValueError(f'codes: rows x bytes are needed, not an array of {codes.ndim} dimensions')
-    return codes
+        parts = [codes[first:first + rows_per_shard] for first in range(0, max(len(codes), 1), rows_per_shard)]
+    for image in parts:
+        rows = as_array(image, 'codes')
+        if rows.ndim != 2:
+            raise ValueError(f'codes: rows x bytes are needed, not an array of {rows.ndim} dimensions')
+        yield rows
 
 
 def _write(folder: str, images: Iterator[np.ndarray], rows_per_shard: int,
            level_sizes: Optional[Sequence[int]]) -> MappedIndex:
-    index: Optional[MappedIndex] = None
     manifest = os.path.join(folder, 'manifest.iib')
-    if os.path.exists(manifest):
-        index = MappedIndex(folder)
+    index = MappedIndex(folder) if os.path.exists(manifest) else None
     if index is not None and not index.images():  # of a call that failed at once
         index = None
         os.unlink(manifest)
     if index is not None:
         if level_sizes is not None and index.levelSizes() != tuple(level_sizes):
             raise ValueError(f'{folder} was begun with level sizes {index.levelSizes()}: remove it, or use these')
-        _skip(index, images, folder)
+        for number in range(index.images()):
+            if not np.array_equal(next(images, ()), index.descriptors(number)):
+                raise ValueError(f'{folder} was begun with other codes or another rows_per_shard: remove it to start again')
     elif level_sizes is not None:
         index = MappedIndex.create(folder, level_sizes)
     shard: list[np.ndarray] = []
@@ -98,13 +92,6 @@ def _write(folder: str, images: Iterator[np.ndarray], rows_per_shard: int,
     return index
 
 
-def _skip(index: MappedIndex, images: Iterator[np.ndarray], folder: str) -> None:
-    for number in range(index.images()):
-        image = next(images, None)
-        if image is None or not np.array_equal(image, index.descriptors(number)):
-            raise ValueError(f'{folder} was begun with other codes or another rows_per_shard: remove it to start again')
-
-
 def search(folder: Path, queries: Any, k: int = 5, client: Any = None) -> Arrays:
     """The k nearest codes of each query by Hamming distance, in all shards; ties in the order of the codes.
 
@@ -119,11 +106,9 @@ def search(folder: Path, queries: Any, k: int = 5, client: Any = None) -> Arrays
     :raises RuntimeError: if the client has had no worker for a minute."""
     queries = as_array(queries, 'queries')
     index = _opened(os.path.abspath(os.fspath(folder)))
-    k, rows = integer(k, 'k'), index.rows()
-    if client is None or index.segments() == 0 or k < 1:
+    k = integer(k, 'k')
+    if client is None or not 1 <= k <= index.rows():
         return index.search(queries, k)
-    check_padding(len(queries), k, lambda: rows)
-    wanted, k = k, max(min(k, rows), 1)
     search_shard = functools.partial(_search_shard, os.path.abspath(os.fspath(folder)), index.version(), queries, k)
     best = np.full((len(queries), k), -1), np.full((len(queries), k), -1, np.int32)
     for found in _by_workers(client, search_shard, range(index.segments())):
@@ -131,8 +116,7 @@ def search(folder: Path, queries: Any, k: int = 5, client: Any = None) -> Arrays
         # As in the C++ library: ties go to the lowest index; -1, where there are fewer, comes last.
         order = np.lexsort((indices, np.where(indices < 0, np.iinfo(np.int32).max, distances)))[:, :k]
         best = np.take_along_axis(indices, order, 1), np.take_along_axis(distances, order, 1)
-    missing = (0, 0), (0, wanted - k)
-    return np.pad(best[0], missing, constant_values=-1), np.pad(best[1], missing, constant_values=-1)
+    return best
 
 
 def _by_workers(client: Any, call: Callable[[int], Arrays], shards: Iterable[int]) -> Iterator[Arrays]:

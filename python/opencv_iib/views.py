@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from opencv_iib import _core
 from opencv_iib._arguments import integer, number
 from opencv_iib._arrays import as_image, as_mask
-from opencv_iib._upright import Turn
+from opencv_iib._orientation import Turn
 from opencv_iib.refinement import float_rows
 
 

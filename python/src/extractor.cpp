@@ -42,6 +42,14 @@ cv::Ptr<Extractor> withoutDetector(const Extractor& self)
     return result;
 }
 
+void write(const Self& self, nb::object file) { withoutDetector(*self)->save(pathOf(file)); }
+
+const char* const WRITE =
+        R"(Writes the parameters, but not the detector, to a .yml, .xml or .json file, which read() and C++ read.
+
+:raises opencv_iib.error: if the file cannot be written; an older one is kept. Also for a link that leads to no file, a folder, a
+    device or a pipe.)";
+
 void create(Self* self, float scaleFactor, int granularity, int channels, int mapping, bool overlap,
         bool useOrientation, int extraChannels)
 {
@@ -80,10 +88,11 @@ void bindExtractor(nb::module_& m)
             .def("getSelection", &getSelection,
                     nb::sig("def getSelection(self) -> numpy.typing.NDArray[numpy.int32]"),
                     "Q x 5 int32, as setSelection takes it; 0 x 5 if there is no selection.")
-            .def(
-                    "_save",
-                    [](const Self& self, nb::object file) { withoutDetector(*self)->save(pathOf(file)); },
-                    nb::arg().none())
+            .def("write", &write, nb::arg().none(),
+                    nb::sig("def write(self, fileName: opencv_iib._arguments.Path) -> None"), WRITE)
+            .def("save", &write, nb::arg().none(),
+                    nb::sig("def save(self, filename: opencv_iib._arguments.Path) -> None"),
+                    "The same as write().")
             .def("_parameters", [](const Self& self) { return parametersOf(*withoutDetector(*self)); })
             .def("_setParameters", [](Self& self, const std::string& text) { setParameters(*self, text); });
     method(cls, "levelSizes", &Extractor::levelSizes,

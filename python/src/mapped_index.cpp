@@ -50,15 +50,26 @@ void bindMappedIndex(nb::module_& m)
                         Index::create(pathOf(folder), levelSizes);
                     },
                     nb::arg().none(), nb::arg())
-            .def("_imageOf", [](const Self& self, int64_t row) { return self->imageOf(row); })
-            .def("_firstRow", [](const Self& self, int64_t image) { return self->firstRow(image); })
-            .def("_descriptorsOf", [](const Self& self, int64_t image) { return self->descriptors(image); })
+            .def(
+                    "imageOf", [](const Self& self, int64_t row) { return self->imageOf(row); },
+                    nb::sig("def imageOf(self, row: typing.SupportsIndex) -> int"), "The image of a row.")
+            .def(
+                    "firstRow", [](const Self& self, int64_t image) { return self->firstRow(image); },
+                    nb::sig("def firstRow(self, image: typing.SupportsIndex) -> int"),
+                    "The first row of an image.")
+            .def(
+                    "descriptors", [](const Self& self, int64_t image) { return self->descriptors(image); },
+                    nb::sig("def descriptors(self, image: typing.SupportsIndex) -> "
+                            "numpy.typing.NDArray[numpy.uint8]"),
+                    "A copy of the descriptors of an image.")
             .def(
                     "_add", [](Self& self, const std::vector<cv::Mat>& images) { self->add(images); },
                     WithoutGil())
             .def(
-                    "_remove", [](Self& self, const std::vector<int64>& images) { self->remove(images); },
-                    WithoutGil())
+                    "remove", [](Self& self, const std::vector<int64>& images) { self->remove(images); },
+                    WithoutGil(),
+                    nb::sig("def remove(self, images: typing.Sequence[typing.SupportsIndex]) -> None"),
+                    "Hides images from all searches; their codes stay on the disk.")
             .def("_search", &search);
     method(cls, "refresh", &Index::refresh, "Goes on to the last commit.");
     method(cls, "levelSizes", &Index::levelSizes, "Bytes of each level, coarse first.");

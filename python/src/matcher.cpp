@@ -34,14 +34,6 @@ nb::tuple trainDescriptors(const Self& self)
     return nb::tuple(nb::cast(copies));
 }
 
-int64_t countRows(const Self& self)
-{
-    int64_t rows = 0;
-    for (const cv::Mat& descriptors : self->getTrainDescriptors())
-        rows += descriptors.rows;
-    return rows;
-}
-
 //! Indices, distances, images.
 std::tuple<cv::Mat, cv::Mat, cv::Mat> knnMatchArrays(
         const Self& self, const cv::Mat& queries, int k, const Mats& masks)
@@ -93,22 +85,28 @@ void bindMatcher(nb::module_& m)
                     },
                     nb::arg().none())
             .def(
-                    "_saveIndex",
+                    "saveIndex",
                     [](const Self& self, nb::object file) {
                         const std::string name = pathOf(file);
                         nb::gil_scoped_release release;
                         self->saveIndex(name);
                     },
-                    nb::arg().none())
+                    nb::arg().none(),
+                    nb::sig("def saveIndex(self, filename: opencv_iib._arguments.Path) -> None"),
+                    "Writes level sizes, parameters and all train descriptors to a binary file, the same as "
+                    "C++ writes.")
             .def("_clone", &clone)
             .def("_on", &on, WithoutGil())
             .def(
                     "_add", [](Self& self, const Mats& descriptors) { self->add(descriptors); }, WithoutGil())
-            .def("_countRows", &countRows)
             .def("_radiusMatch", &radiusMatch, WithoutGil())
             .def("_knnMatchArrays", &knnMatchArrays, WithoutGil())
-            .def("_setThresholds",
-                    [](Self& self, const std::vector<float>& thresholds) { self->setThresholds(thresholds); })
+            .def(
+                    "setThresholds",
+                    [](Self& self, const std::vector<float>& thresholds) { self->setThresholds(thresholds); },
+                    nb::sig("def setThresholds(self, thresholds: typing.Sequence[float]) -> None"),
+                    "Thresholds of THRESHOLD, 0 to 1: one for every level but the last, or a single one for "
+                    "all.")
             .def("_parametersAsText", [](const Self& self) { return parametersOf(*self); })
             .def("_setParameters", [](Self& self, const std::string& text) { setParameters(*self, text); })
             .def(

@@ -54,9 +54,13 @@ class InFolder(Commands):
         return str(self.folder / name)
 
     def rows(self, name):
-        """Rows of a CSV file."""
-        with open(self.folder / name, newline='') as file:
-            return list(csv.DictReader(file))
+        return rows_of(self.folder, name)
+
+
+def rows_of(folder, name):
+    """Rows of a CSV file."""
+    with open(Path(folder, name), newline='') as file:
+        return list(csv.DictReader(file))
 
 
 def run_command(*arguments):

@@ -133,5 +133,6 @@ class Files(InFolder):
             pass
         self.assertFalse((self.folder / 'gone').exists(), 'no file is made in its place')
         (self.folder / 'link').symlink_to('a')
-        with self.assertRaisesRegex(FileExistsError, 'is a link'), only_writer(str(self.folder / 'link')):
-            pass
+        for name, what in (('link', 'a link'), ('out', 'a folder')):
+            with self.assertRaisesRegex(FileExistsError, f'is {what}: remove it'), only_writer(str(self.folder / name)):
+                pass

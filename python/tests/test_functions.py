@@ -56,13 +56,6 @@ class Functions(unittest.TestCase):
             pairs, distances = opencv_iib.match(a, b)
             self.assertEqual((pairs.shape, pairs.dtype, distances.shape), ((0, 2), np.int32, (0,)))
 
-    def test_masks(self):
-        mask = np.zeros_like(self.image)
-        mask[:, 160:] = 1
-        points = opencv_iib.detect_and_describe(self.image, mask=mask).points
-        self.assertGreater(len(points), 20)
-        self.assertGreaterEqual(points[:, 0].min(), 159.5)
-
     def test_tensors_with_channels_first(self):
         rows = np.dstack([np.roll(self.image, 9 * i, 1) for i in range(3)])  # blue, green, red
         alpha = np.dstack([rows, self.image])

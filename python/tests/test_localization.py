@@ -1,5 +1,4 @@
 import copy
-import csv
 import os
 import pickle
 import re
@@ -11,12 +10,11 @@ from unittest import mock
 import numpy as np
 
 import opencv_iib
-from opencv_iib import _upright
 from opencv_iib._exif import MIRRORED
 from opencv_iib._files import RECORD
 from opencv_iib.localization import Camera, Localizer, Location, smooth_poses
 from opencv_iib.localization import run as runs
-from support import REPOSITORY, cv2, optional, run_command, steps_meanwhile
+from support import REPOSITORY, cv2, optional, rows_of, run_command, steps_meanwhile
 from wall import CAMERA, HEIGHT, OnWall, PLACES, WIDTH, photograph, pose, trajectory, wall, write_model
 
 pycolmap = optional('pycolmap')
@@ -39,9 +37,8 @@ class Localization(OnWall):
             self.assertLess(np.linalg.norm(found[name][:3] - [*place, 0]), .05)
             half = cv2.Rodrigues(true[:3, :3].T)[0].ravel() / 2
             self.assertGreater(found[name][3:] @ [*half, 1] / np.linalg.norm([*half, 1]), .9999)  # of small angles
-        lines = Path(out, 'frames.csv').read_text().splitlines()
-        self.assertRegex(lines[0], '^name,found,reason,matches,inliers,x_x,x_y,x_z,x_rx,')
-        rows = list(csv.DictReader(lines))
+        rows = rows_of(out, 'frames.csv')
+        self.assertEqual(list(rows[0])[:9], ['name', 'found', 'reason', 'matches', 'inliers', 'x_x', 'x_y', 'x_z', 'x_rx'])
         self.assertEqual([row['found'] for row in rows], ['1'] * 3)
         self.assertGreater(int(rows[0]['inliers']), 15)
         self.assertLess(float(rows[0]['x_x']) ** .5, .05)
@@ -102,56 +99,29 @@ class Localization(OnWall):
 
     def test_photographs_that_are_stored_turned(self):
         from test_upright import STORED, png, stored
-        folder, out, localizer = self.path('turned'), self.path('out'), Localizer(self.map)
+        folder, out = self.path('turned'), self.path('out')
         os.makedirs(folder)
-        found = {}
         for orientation in STORED:
-            turn = _upright.Turn(orientation, *stored(self.grey(), orientation).shape[1::-1])
             Path(folder, f'{orientation}.png').write_bytes(png(stored(self.grey(), orientation), orientation))
-            if orientation in MIRRORED:
-                with self.assertRaisesRegex(opencv_iib.error, 'stored mirrored'):
-                    localizer.localize(self.grey(), CAMERA, None, orientation)
-            else:
-                width, height = stored(self.grey(), orientation).shape[::-1]
-                camera = Camera('PINHOLE', width, height, (300, 300, width / 2, height / 2))
-                location = found[orientation] = localizer.localize(stored(self.grey(), orientation), camera, None, orientation)
-                moved = np.eye(4)
-                moved[:2, :2] = turn.matrix[:2, :2].T
-                self.check(Location(moved @ location.cam_from_world, location.covariance))
-                seen = camera.project(location.points @ location.cam_from_world[:3, :3].T + location.cam_from_world[:3, 3])
-                self.assertLess(np.abs(seen - location.pixels).max(), 2)
-                near = localizer.localize(stored(self.grey(), orientation), camera, location.cam_from_world, orientation)
-                np.testing.assert_allclose(near.cam_from_world, location.cam_from_world, atol=.02)
-        status, errors = self.localize(out, '--camera', 'SIMPLE_PINHOLE,240,320,300,120,160', images=folder)
-        self.assertEqual((status, sorted(trajectory(out))), (4, ['6', '8']))
-        for more in ((), ('--no-exif',)):  # only EXIF says that an image is mirrored
+        for more in ((), ('--no-exif',)):  # images are found at any rotation; only EXIF says that one is mirrored
+            status, _ = self.localize(out, '--camera', 'SIMPLE_PINHOLE,240,320,300,120,160', *more, images=folder)
+            self.assertEqual((status, sorted(trajectory(out))), (4, ['6', '8']))
+            np.testing.assert_allclose(trajectory(out)['6'][:3], [*self.truth['c'], 0], atol=.05)
             for command in (('localize', '--out', self.path('l')), ('update', '--out', self.path('u'))):
                 errors = run_command(*command, '--map', self.map, '--images', folder, *more)[2]
                 for orientation in MIRRORED:
                     self.assertRegex(errors, rf'{orientation}.png: its EXIF data say that it is stored mirrored \(orientation {orientation}\)')
-        np.testing.assert_allclose(trajectory(out)['6'][:3], -found[6].cam_from_world[:3, :3].T @ found[6].cam_from_world[:3, 3], atol=.01)
-        status, errors = self.localize(out, '--camera', 'SIMPLE_PINHOLE,240,320,300,120,160', '--no-exif', images=folder)
-        self.assertEqual((status, sorted(trajectory(out))), (4, ['6', '8']))  # at any rotation
         status, text, _ = run_command('update', '--map', self.map, '--images', folder, '--out', self.path('new'), '--camera', CAMERA)
         self.assertEqual((status, '2 localized' in text), (4, True))
 
-    def test_an_imu_gives_poses_to_images_that_tell_nothing(self):
+    def test_arguments_of_smooth_poses(self):
         localizer = Localizer(self.map)
         location, nothing = (localizer.localize(image, CAMERA) for image in (self.grey(), np.zeros((HEIGHT, WIDTH), np.uint8)))
-        times = [8_500_000_000 + 500_000_000 * i for i in range(6)]
-        own = location.cam_from_world
-        readings = np.zeros((1001, 7))  # the camera stands still
-        readings[:, 0], readings[:, 4:] = 8e9 + 5e6 * np.arange(1001), own[:3, :3] @ [0, -9.81, 0]
+        times, readings = np.arange(6), np.zeros((0, 7))
         locations = [location, nothing, *[location] * 4]
-        smoothed = smooth_poses(np.array(times), locations, readings)
-        self.assertEqual(smoothed.reason, '')
-        for found in smoothed:
-            np.testing.assert_allclose(found, own, atol=1e-3)
-        wrong = smooth_poses(times, locations, readings * ([1] + [30] * 6))
-        self.assertRegex(wrong.reason, 'contradict the images')
-        self.assertEqual([pose is None for pose in wrong], [False, True, *[False] * 4])
-        self.assertEqual([pose is None for pose in smooth_poses(times, locations, readings[:0])], [False, True, *[False] * 4])
-        for text, wrong in (('M x 7', (times, locations, readings[:, 1:])), ('M x 7', (times, locations, readings * np.nan)),
+        found = smooth_poses(times, locations, readings)
+        self.assertEqual(([pose is None for pose in found], found.reason), ([False, True, *[False] * 4], ''))
+        for text, wrong in (('M x 7', (times, locations, readings[:, 1:])), ('M x 7', (times, locations, np.full((1, 7), np.nan))),
                             ('and rise', (times[::-1], locations, readings)), ('5 times of 6', (times[1:], locations, readings)),
                             ('an integer', ([.5] * 6, locations, readings)), ('a pose is', (times, locations, readings, [1]))):
             with self.assertRaisesRegex((TypeError, ValueError, opencv_iib.error), text):
@@ -185,8 +155,7 @@ class Localization(OnWall):
         status, errors = self.localize(out, '--camera', CAMERA, images=mixed)
         self.assertEqual(status, 4)
         self.assertRegex(errors, 'elsewhere.png: too few matches')
-        rows = {row['name']: row for row in csv.DictReader(Path(out, 'frames.csv').read_text().splitlines())}
-        self.assertRegex(rows['elsewhere.png']['reason'], 'too few matches')
+        self.assertRegex({row['name']: row['reason'] for row in rows_of(out, 'frames.csv')}['elsewhere.png'], 'too few matches')
         shutil.rmtree(mixed)
         os.makedirs(mixed)
         Path(mixed, 'broken.png').write_bytes(b'nothing')
@@ -204,8 +173,7 @@ class Localization(OnWall):
         os.mkfifo(os.path.join(mixed, 'pipe.png'))
         for _ in range(2):
             self.assertEqual(self.localize(out, '--camera', CAMERA, '--pictures', images=mixed)[0], 4)
-        with open(os.path.join(out, 'frames.csv'), newline='') as file:
-            rows = {row['name']: row for row in csv.DictReader(file)}
+        rows = {row['name']: row for row in rows_of(out, 'frames.csv')}
         self.assertEqual(sorted(trajectory(out)), ['c.jpg', 'c.jpg.png', 'c.png', 'x' * 251])
         self.assertEqual(sorted(os.listdir(os.path.join(out, 'matches'))), ['c.jpg.png', 'c.jpg.png.png', 'c.png.png', 'x' * 251 + '.png'])
         self.assertEqual([row['found'] for row in rows.values()].count('1'), 4)
@@ -246,6 +214,24 @@ class Localization(OnWall):
         self.assertEqual(run_command(*mapping, larger)[0], 1)
         self.assertRegex(run_command(*mapping, larger)[2], r'\nmap: no keypoint was found in any .* of; .*320 x 240 .* 640 x 480: left out of the map\n$')
         self.assertFalse(os.path.exists(out) and os.listdir(out))
+
+    def test_every_command_takes_paths_that_are_not_utf8_and_is_quiet(self):
+        folder = self.path('x') + '/caf\udce9'
+        shutil.copytree(self.dark, folder + '/images')
+        shutil.copytree(self.images, folder + '/mapped')
+        Path(folder, 'pairs.txt').write_text('c.png a-b.png\n')
+        pair, images, of = (f'{folder}/images/c.png', f'{folder}/images/a-b.png'), f'{folder}/images', ('--images', f'{folder}/images')
+        for arguments in (('demo', *pair, '--out', folder + '/x.png'), ('match', *pair, '--out', folder + '/x.csv'),
+                          ('match', '--pairs', folder + '/pairs.txt', *of, '--out', folder + '/matched'), ('align', *pair, '--out', folder + '/aligned'),
+                          ('colmap', images, folder + '/x.db', '--points', '300', '--verify', 'magsac'),
+                          ('map', '--model', self.model, '--images', folder + '/mapped', '--out', folder + '/map', '--points', '400'),
+                          ('localize', '--map', folder + '/map', *of, '--out', folder + '/out'), ('update', '--map', folder + '/map', *of)):
+            with self.subTest(arguments):
+                status, out, _ = run_command(*arguments)
+                self.assertIn(status, (0, 3))
+                out.encode()  # like a terminal
+                self.assertEqual(run_command(*arguments, '--quiet', *(['--force'] if arguments[0] == 'map' else []))[1:], ('', ''))
+        self.assertEqual(len(trajectory(folder + '/out')), 3)
 
     def test_no_command_replaces_what_is_the_users(self):
         c, listing = os.path.join(self.dark, 'c.png'), Path(self.path('pairs.txt'))

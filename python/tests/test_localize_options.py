@@ -24,6 +24,7 @@ class Options(InFolder):
     def setUp(self):
         super().setUp()
         self.images, self.out, self.map = self.folder / 'images', self.folder / 'out', os.path.join(mapped(), 'map')
+        self.command = 'localize', '--map', self.map, '--images', self.images, '--out', self.out
         self.images.mkdir()
         self.picture = photograph(wall(3), pose(*PLACE), evening)
 
@@ -32,12 +33,7 @@ class Options(InFolder):
         return str(self.images / name)
 
     def localize(self, *more):
-        return run_command('localize', '--map', self.map, '--images', self.images, '--out', self.out, *more)
-
-    def expect_mistake(self, message, *more):
-        status, _, errors = self.localize(*more)
-        self.assertEqual((status, errors.count('\n')), (2, 1))
-        self.assertRegex(errors, message)
+        return run_command(*self.command, *more)
 
     def check(self, numbers):
         """Centre and quaternion x y z w."""
@@ -65,8 +61,7 @@ class Imu(Options):
         found = trajectory(self.out)
         self.assertEqual(list(found), [f'{8 + n}.500000' for n in range(6)])
         self.check(found['9.500000'])
-        with open(self.out / 'frames.csv', newline='') as file:
-            rows = list(csv.DictReader(file))
+        rows = self.rows('out/frames.csv')
         self.assertEqual([(row['name'], row['found'], bool(row['x_x']), bool(row['tx'])) for row in rows][:2],
                          [('8.500000.png', '1', True, True), ('9.500000.png', '0', False, True)])
         contradicting = self.write(''.join(f'{time},0,0,0,0,{30 * felt[1]:.9f},0\n' for time in range(8000000000, 14000000001, 5000000)))
@@ -74,16 +69,13 @@ class Imu(Options):
         self.assertEqual((status, '5 of 6 images have a pose' in out), (4, True))
         self.assertRegex(errors, 'the readings of the IMU contradict the images, whose poses stay as they are')
         self.image('08.5.png')
-        self.check_error('08.5.png and 8.500000.png have one time', 'localize', *self.arguments(imu))
+        self.check_error('08.5.png and 8.500000.png have one time', *self.command, '--imu', imu)
         shutil.rmtree(self.images)
         self.images.mkdir()
         self.image('1500000000000000.png')  # microseconds
-        self.check_error("are not those of the IMU's readings", 'localize', *self.arguments(imu))
+        self.check_error("are not those of the IMU's readings", *self.command, '--imu', imu)
         self.image('left.png')
-        self.check_error('left.png: with --imu the images must be named by their times', 'localize', *self.arguments(imu))
-
-    def arguments(self, imu):
-        return '--map', self.map, '--images', self.images, '--out', self.out, '--imu', imu
+        self.check_error('left.png: with --imu the images must be named by their times', *self.command, '--imu', imu)
 
     def test_readings(self):
         path = self.write('#timestamp [ns],w_x\n0,0.1,-0.2,0.3,1,2,9.81\r\n5000000,0,0,0,1e-3,0,0\n')
@@ -97,7 +89,7 @@ class Imu(Options):
                 read_imu(str(self.write(text)))
         for path in (self.folder / 'none.csv', self.folder):
             self.image('1.5.png')
-            self.check_mistake('there is no file .*' + path.name, 'localize', *self.arguments(path))
+            self.check_mistake('there is no file .*' + path.name, *self.command, '--imu', path)
         self.assertFalse(self.out.exists())
 
     def test_names_that_are_times(self):
@@ -112,7 +104,7 @@ class Imu(Options):
         np.testing.assert_allclose(parse_pose('1,2,3,0,0,.70710678,.70710678'), [[0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]], atol=1e-7)
         self.image('1.5.png')
         for wrong in ('1e300,0,0,0,0,0,1', '0,0,0,1,1,1,1', '0,0,0,0,0,0', 'x,0,0,0,0,0,1', ''):
-            self.expect_mistake('is not tx,ty,tz,qx,qy,qz,qw with a quaternion of length 1 and metres', '--imu-from-camera=' + wrong)
+            self.check_mistake('is not tx,ty,tz,qx,qy,qz,qw with a quaternion of length 1 and metres', *self.command, '--imu-from-camera=' + wrong)
 
 
 class LargeImages(Options):
@@ -130,27 +122,7 @@ class LargeImages(Options):
         np.testing.assert_array_equal(found[0], found[320])
         self.assertFalse(np.array_equal(found[0], found[250]))
         self.assertLess(red[250], 3 * red[0])
-        self.expect_mistake('at least 32 pixels, or 0', '--max-size', 31)
-
-
-class Sequence(Options):
-
-    def test_each_image_is_looked_for_where_the_last_one_was(self):
-        priors, real = [], Localizer.localize
-        for name in ('10.png', '9.png', '11.png', 'x.png'):
-            self.image(name, np.zeros((HEIGHT, WIDTH), np.uint8) if name == '10.png' else None)
-
-        def localize(localizer, image, camera, prior, *more):
-            priors.append((int(image.any()), prior is not None))
-            return real(localizer, image, camera, prior, *more)
-        with mock.patch.object(Localizer, 'localize', localize):
-            self.assertEqual(self.localize('--camera', CAMERA, '--sequence')[0], 4)
-        self.assertEqual(priors, [(1, False), (0, True), (1, False), (1, True)])
-        self.check(trajectory(self.out)['x'])
-        priors.clear()
-        with mock.patch.object(Localizer, 'localize', localize):
-            self.localize('--camera', CAMERA)
-        self.assertFalse(any(prior for _, prior in priors))
+        self.check_mistake('at least 32 pixels, or 0', *self.command, '--max-size', 31)
 
 
 class Table(Options):
@@ -161,7 +133,7 @@ class Table(Options):
         self.assertEqual(self.localize('--camera', CAMERA)[0], 4)
         expected = (self.out / 'frames.csv').read_bytes().decode()
         for out in ('-', self.folder / 'x.csv'):
-            status, text, errors = run_command('localize', '--map', self.map, '--images', self.images, '--camera', CAMERA, '--out', out)
+            status, text, errors = run_command(*self.command[:-1], out, '--camera', CAMERA)
             written = text if out == '-' else out.read_bytes().decode()
             self.assertEqual((status, written), (4, expected))
             self.assertIn('1 of 2 images have a pose', errors if out == '-' else text)
@@ -169,7 +141,7 @@ class Table(Options):
         self.check(np.array([found[name] for name in ('tx', 'ty', 'tz', 'qx', 'qy', 'qz', 'qw')], float))
         self.assertTrue(float(found['x_x']) > 0 and missing['reason'] and not missing['tx'])
         self.assertEqual(sorted(os.listdir(self.folder)), ['images', 'out', 'x.csv'])
-        self.check_mistake('is no folder', 'localize', '--map', self.map, '--images', self.images, '--out', 'x.csv', '--pictures')
+        self.check_mistake('is no folder', *self.command[:-1], 'x.csv', '--pictures')
 
 
 class Mistakes(Options):
@@ -179,7 +151,7 @@ class Mistakes(Options):
         self.assertEqual(self.localize('--pictures')[0], 0)
         masks = self.out / 'matches'
         os.rename(masks / 'a.png', masks / 'a.png.png')
-        self.check_mistake('is in .*, whose files', 'localize', '--map', self.map, '--images', self.images, '--out', self.out, '--mask', masks)
+        self.check_mistake('is in .*, whose files', *self.command, '--mask', masks)
 
     def test_a_camera_or_mask_of_another_size_leaves_good_results(self):
         self.image('a.png')
@@ -187,9 +159,9 @@ class Mistakes(Options):
         self.localize()
         before = (self.out / 'frames.csv').read_bytes()
         with mock.patch.object(Localizer, 'localize', side_effect=AssertionError):
-            self.expect_mistake('a.png.*: its camera has 640 x 480 pixels, and the image 320 x 240', '--camera', 'PINHOLE,640,480,500,500,320,240')
+            self.check_mistake('a.png.*: its camera has 640 x 480 pixels, and the image 320 x 240', *self.command, '--camera', 'PINHOLE,640,480,500,500,320,240')
             cv2.imwrite(str(self.folder / 'mask.png'), np.ones((9, 9), np.uint8))
-            self.expect_mistake('a.png.*: its mask .* has 9 x 9 pixels, and the image 320 x 240', '--mask', self.folder / 'mask.png')
+            self.check_mistake('a.png.*: its mask .* has 9 x 9 pixels, and the image 320 x 240', *self.command, '--mask', self.folder / 'mask.png')
             status, _, errors = run_command('update', '--map', self.map, '--images', self.images, '--mask', self.folder / 'mask.png', '--out', self.folder / 'new')
             self.assertEqual((status, errors.count('\n'), (self.folder / 'new').exists()), (2, 1, False))
         self.assertEqual((self.out / 'frames.csv').read_bytes(), before)
@@ -227,23 +199,28 @@ class Stream(Options):
         self.assertEqual(self.stream(none)[0], 3)
         self.assertEqual(self.stream('')[0], 0)
 
-    def test_the_last_pose_is_the_prior_of_the_next(self):
-        a, none, priors = self.image('a.png'), self.image('none.png', np.zeros((HEIGHT, WIDTH), np.uint8)), []
-
-        def localize(localizer, image, camera, prior, *more):
-            priors.append(prior is not None)
-            return real(localizer, image, camera, prior, *more)
-        real = Localizer.localize
-        with mock.patch.object(Localizer, 'localize', localize):
-            self.stream('\n'.join((a, a, none, a)), '--camera', CAMERA)
-        self.assertEqual(priors, [False, True, True, False])
-
     def test_names_are_bytes_whatever_the_encoding_of_the_pipes(self):
         name = os.path.join(os.fsencode(self.images), 'žluť.png'.encode())
         shutil.copy(self.image('a.png'), name)
         found = subprocess.run([sys.executable, '-m', 'opencv_iib', 'localize', '--map', self.map, '--images', '-', '--camera', CAMERA],
                                input=name + b'\n', capture_output=True, env={**os.environ, 'PYTHONIOENCODING': 'cp1252'})
         self.assertEqual((found.returncode, found.stdout.rsplit(b' ', 7)[0]), (0, name))
+
+    def test_each_image_is_looked_for_where_the_last_one_was(self):
+        priors, real = [], Localizer.localize
+        paths = [self.image(name, np.zeros((HEIGHT, WIDTH), np.uint8) if name == '10.png' else None) for name in ('9.png', '10.png', '11.png', 'x.png')]
+
+        def localize(localizer, image, camera, prior, *more):
+            priors.append((int(image.any()), prior is not None))
+            return real(localizer, image, camera, prior, *more)
+        with mock.patch.object(Localizer, 'localize', localize):
+            for run in (lambda: self.localize('--camera', CAMERA, '--sequence'), lambda: self.stream('\n'.join(paths), '--camera', CAMERA)):
+                self.assertEqual(run()[0], 4)
+                self.assertEqual(priors, [(1, False), (0, True), (1, False), (1, True)])
+                priors.clear()
+            self.check(trajectory(self.out)['x'])
+            self.localize('--camera', CAMERA)
+        self.assertFalse(any(prior for _, prior in priors))
 
     def test_mistakes(self):
         for option in (['--out', self.out], ['--pictures'], ['--imu', 'x.csv'], ['--sequence']):

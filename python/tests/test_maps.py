@@ -10,11 +10,11 @@ from unittest import mock
 import numpy as np
 
 import opencv_iib
-from opencv_iib import _core, _upright
-from opencv_iib.localization import Camera, Localizer, build, update
+from opencv_iib import _core, _orientation
+from opencv_iib.localization import Camera, Localizer, build
 from opencv_iib.localization import maps, run as runs
 from support import cv2, files_end_at, run_command, seconds_until_interrupt
-from wall import CAMERA, HEIGHT, OnWall, WIDTH, evening, photograph, pose, rigid, trajectory, wall, write_model
+from wall import CAMERA, HEIGHT, OnWall, WIDTH, photograph, pose, rigid, trajectory, wall, write_model
 
 STRECHA = os.path.join(os.environ.get('OPENCV_TEST_DATA_PATH', ''), 'strecha', 'Herz-Jesus-P8')
 
@@ -36,7 +36,7 @@ class Maps(OnWall):
             os.makedirs(os.path.dirname(os.path.join(images, name)), exist_ok=True)
             Path(images, name).write_bytes(png(image, orientation))
             turned = np.eye(4)
-            turned[:2, :2] = _upright.Turn(orientation, *image.shape[::-1]).matrix[:2, :2]
+            turned[:2, :2] = _orientation.Turn(orientation, *image.shape[::-1]).matrix[:2, :2]
             camera = Camera.parse(CAMERA).upright({6: 8, 8: 6}.get(orientation, orientation))
             posed.append(_core.PosedImage(name, camera, turned @ self.poses[name], np.empty((0, 2))))
         Path(images, 'mirrored.png').write_bytes(png(image, 2))
@@ -64,11 +64,7 @@ class Maps(OnWall):
             cv2.imwrite(os.path.join(masks, name + '.png'), mask)
         status, text, _ = run_command('map', '--model', self.model, '--images', self.images, '--out', out, '--points', '400', '--mask', masks)
         self.assertEqual(status, 0)
-        location = Localizer(out).localize(self.grey(), CAMERA)
-        self.check(location)
-        seen = Localizer(self.map).localize(self.grey(), CAMERA, mask=mask)
-        self.assertGreaterEqual(seen.pixels[:, 0].min(), WIDTH // 2 - 1)
-        self.assertLess(Localizer(self.map).localize(self.grey(), CAMERA).pixels[:, 0].min(), WIDTH // 2 - 9)
+        self.check(Localizer(out).localize(self.grey(), CAMERA))
         with self.assertRaisesRegex(opencv_iib.error, "a mask must be CV_8UC1"):
             Localizer(self.map).localize(self.grey(), CAMERA, mask=mask[1:])
         status, _ = self.localize(found, '--camera', CAMERA, '--mask', masks, '--max-size', '300')
@@ -109,8 +105,6 @@ class Maps(OnWall):
         localizer = Localizer(out)
         self.assertEqual([(camera.width, camera.height) for camera in localizer.cameras], [(WIDTH, HEIGHT)])
         self.check(localizer.localize(self.grey(), CAMERA))
-        with open(os.path.join(out, 'cameras.bin'), 'rb') as file, open(os.path.join(self.map, 'cameras.bin'), 'rb') as other:
-            self.assertEqual(file.read(), other.read())
         self.assertLess(*(sum(os.path.getsize(os.path.join(folder, name)) for name in os.listdir(folder)) for folder in (out, self.map)))
         self.assertEqual(run_command(*arguments, '31')[0], 2)
 
@@ -120,13 +114,6 @@ class Maps(OnWall):
         self.assertEqual(status, 0, errors)
         self.check(Localizer(made).localize(photograph(wall(3), pose(*self.truth['c'])), CAMERA))
         self.assertRegex(Localizer(made).localize(self.grey(), CAMERA).reason, 'too few')  # recommended points would be found
-
-    def test_nothing_is_said_with_quiet(self):
-        arguments = 'map', '--model', self.model, '--images', self.images, '--points', '300', '--out', self.path('map')
-        os.makedirs(arguments[-1])
-        Path(arguments[-1], '.DS_Store').touch()  # not a map
-        for more in ((), ('--force',)):
-            self.assertEqual(run_command(*arguments, '--quiet', *more), (0, '', ''))
 
     def test_an_interrupted_map(self):
         images, count = [], 40
@@ -172,13 +159,6 @@ class Maps(OnWall):
         self.assertEqual((status, errors.count('6 cameras of the map have its size, which differ: give --camera PINHOLE,320,240,F,F,160,120')),
                          (3, 3))
 
-    def test_what_is_there_is_replaced_by_force_alone(self):
-        out = self.path('map')
-        shutil.copytree(self.map, out)
-        arguments = 'map', '--model', self.model, '--images', self.images, '--points', '300', '--out'
-        self.check_error('--force', *arguments, out)
-        self.assertEqual(run_command(*arguments, out, '--force')[0], 0)
-
     def test_a_map_is_not_replaced_by_one_that_leaves_images_out(self):
         out, images, empty = self.path('map'), self.path('images'), self.path('empty')
         shutil.copytree(self.map, out)
@@ -195,15 +175,16 @@ class Maps(OnWall):
                                '--images', empty, '--out', self.path('none'), *more)
         self.assertFalse(os.path.exists(self.path('none')))
 
-    def test_an_update_replaces_another_map_by_force_alone(self):
+    def test_a_map_is_replaced_by_force_alone(self):
         other = self.path('other')
         shutil.copytree(self.map, other)
-        before = Path(other, 'map.iib').read_bytes()
-        arguments = 'update', '--map', self.map, '--images', self.dark, '--out', other
-        self.check_error('--force', *arguments)
-        self.assertEqual(Path(other, 'map.iib').read_bytes(), before)
-        self.assertEqual(run_command(*arguments, '--force')[0], 0)
-        self.assertNotEqual(Path(other, 'map.iib').read_bytes(), before)
+        Path(other, '.DS_Store').touch()  # of a desktop, not the user's
+        for command in (('map', '--model', self.model, '--images', self.images, '--points', '300'), ('update', '--map', self.map, '--images', self.dark)):
+            before = Path(other, 'map.iib').read_bytes()
+            self.check_error('--force', *command, '--out', other)
+            self.assertEqual(Path(other, 'map.iib').read_bytes(), before)
+            self.assertEqual(run_command(*command, '--out', other, '--force')[0], 0)
+            self.assertNotEqual(Path(other, 'map.iib').read_bytes(), before)
 
     @unittest.skipUnless(hasattr(os, 'getuid') and os.getuid(), 'root may write everywhere')
     def test_a_folder_without_rights_is_refused_before_work(self):
@@ -213,32 +194,16 @@ class Maps(OnWall):
         with mock.patch.object(runs, 'ImageFile', side_effect=AssertionError):
             self.check_error('check the folder and its rights', 'update', '--map', closed, '--images', self.dark)
 
-    def test_links_are_followed_and_results_are_no_images(self):
-        folder = self.path('disk')
-        images, out = os.path.join(folder, 'images'), os.path.join(folder, 'images/out')
+    def test_results_are_no_images_and_links_are_followed(self):
+        images = self.path('images')
         shutil.copytree(self.dark, images)
-        shutil.copytree(self.map, os.path.join(folder, 'map'))
-        os.symlink('disk/map', folder + 'map')
-        os.symlink('disk/images/out', folder + 'out')  # dangling
+        os.symlink(os.path.join(images, 'out'), images + '-out')  # dangling
         for _ in range(2):
-            self.assertEqual(self.localize(folder + 'out', '--pictures', images=images)[0], 0)
-            self.assertEqual(len(trajectory(out)), 3)
-            self.assertTrue(os.path.islink(folder + 'out'))
-        self.assertEqual(run_command('update', '--map', folder + 'map', '--images', self.dark)[0], 0)
-        self.assertTrue(os.path.islink(folder + 'map'))
-
-    def test_paths_that_are_not_utf8(self):
-        folder = self.path('x') + '/caf\udce9'
-        shutil.copytree(self.dark, folder + '/images')
-        shutil.copytree(self.images, folder + '/mapped')
-        self.assertEqual(run_command('map', '--model', self.model, '--images', folder + '/mapped', '--out', folder + '/map')[0], 0)
-        self.assertEqual(self.localize(folder + '/out', map=folder + '/map', images=folder + '/images')[0], 0)
-        self.assertEqual(run_command('update', '--map', folder + '/map', '--images', folder + '/images')[0], 0)
-        self.assertEqual(len(trajectory(folder + '/out')), 3)
+            self.assertEqual(self.localize(images + '-out', '--pictures', images=images)[0], 0)
+            self.assertEqual(len(trajectory(os.path.join(images, 'out'))), 3)
 
     def test_a_full_disk_leaves_the_old_results(self):
-        out, map = self.path('out'), self.path('map')
-        shutil.copytree(self.map, map)
+        out = self.path('out')
         self.assertEqual(self.localize(out, '--pictures')[0], 0)
         largest = max(os.path.getsize(os.path.join(out, name)) for name in os.listdir(out))
         before = trajectory(out), sorted(os.listdir(out))
@@ -247,27 +212,6 @@ class Maps(OnWall):
                 status, _ = self.localize(out)
             self.assertEqual((status, before[1]), (1, sorted(os.listdir(out))))
         self.assertEqual(trajectory(out).keys(), before[0].keys())
-        largest = max(os.path.getsize(os.path.join(map, name)) for name in os.listdir(map))
-        for size in (0, 5000, largest // 2):
-            with files_end_at(size):
-                self.assertEqual(run_command('update', '--map', map, '--images', self.dark)[0], 1)
-            self.check(Localizer(map).localize(self.grey(), CAMERA))
-
-    def test_an_update_adds_a_light(self):
-        out, night = self.path('map'), self.path('night')
-        os.makedirs(night)
-        for name, place in self.truth.items():
-            view = photograph(wall(3), pose(*place), lambda grey: evening(grey, noise=6))
-            cv2.imwrite(os.path.join(night, name.replace('/', ' ') + '.png'), view)
-        with redirect_stderr(io.StringIO()):
-            counts = update(self.map, night, CAMERA, out)
-            self.assertEqual((counts['images'], counts['localized']), (3, 3))
-            self.assertGreater(counts['added'], 0)
-            self.check(Localizer(out).localize(self.grey(), CAMERA))
-            old, new = (Localizer(map, 400).localize(view, CAMERA).inliers for map in (self.map, out))
-            self.assertGreater(new, 1.2 * old)
-            again = update(out, night)
-        self.assertEqual((again['localized'], again['added']), (3, 0))
 
     def test_an_update_says_why_an_image_has_no_pose(self):
         mixed, out = self.path('mixed'), self.path('new')
@@ -279,7 +223,8 @@ class Maps(OnWall):
         self.assertEqual((status, '2 images, 0 localized' in text), (3, True))
         self.assertRegex(errors, r'broken.png: the file is empty\nelsewhere.png: too few matches')
         shutil.copy(os.path.join(self.dark, 'c.png'), mixed)
-        self.assertEqual(run_command(*arguments, '--force')[0], 4)
+        status, text, _ = run_command(*arguments, '--force')
+        self.assertEqual((status, '3 images, 1 localized' in text), (4, True))
 
     @unittest.skipUnless(os.path.isdir(STRECHA), 'OPENCV_TEST_DATA_PATH has no strecha/Herz-Jesus-P8')
     def test_photographs_within_five_centimetres_also_relit(self):

@@ -1,8 +1,6 @@
 """Messages for mistakes name the argument in words of Python, and say what to do."""
-import contextlib
 import inspect
 import unittest
-import warnings
 from pathlib import Path
 from unittest import mock
 
@@ -45,32 +43,31 @@ class Texts(InFolder):
                     lambda: opencv_iib.matchRotated(texture(40, 40), texture(40, 40), IIB(), IIB()))
 
     @mock.patch('warnings.warn')
-    def test_no_call_shows_the_types_of_cpp(self, _):
+    def test_no_call_shows_the_types_of_cpp_or_ends_in_a_bare_error(self, _):
         index = MappedIndex.create(self.folder, [8])
         index.add(np.zeros((3, 8), np.uint8))
-        owners = (IIB(), HessianDetector(), NormalizedDetector(HessianDetector()), HierarchicalMatcher(), index)
-        functions = [getattr(opencv_iib, name) for name in opencv_iib.__all__ if inspect.isfunction(getattr(opencv_iib, name))]
-        methods = [method for owner in owners for name, method in inspect.getmembers(owner, inspect.isroutine)
-                   if not name.startswith('_')] + [type(owner) for owner in owners] + functions
-        calls = 0
-        for method in methods:
-            parameters = list(inspect.signature(method).parameters.values())
-            for wrong in (object(), 'x', 1 << 70, -1.5, None, [object()], float('nan')):
-                for place in range(len(parameters)):
-                    arguments = {}
-                    for i, parameter in enumerate(parameters):
-                        if i == place or parameter.default is inspect.Parameter.empty:
-                            arguments[parameter.name] = wrong if i == place else np.zeros((3, 8), np.uint8)
-                    if parameters[place].name.lower() == 'filename':
-                        arguments[parameters[place].name] = object() if isinstance(wrong, str) else wrong
-                    calls += 1
+        owners = (IIB(), HessianDetector(), NormalizedDetector(HessianDetector()), HierarchicalMatcher(), index, Camera.parse('PINHOLE,9,9,9,9,4,4'))
+        calls = [getattr(opencv_iib, name) for name in opencv_iib.__all__ if inspect.isfunction(getattr(opencv_iib, name))]
+        calls += [method for owner in owners for name, method in inspect.getmembers(owner, inspect.isroutine) if name[0] != '_']
+        shapes = [[[]], ((),), *(np.zeros(shape, kind) for shape in ((5, 0), (0, 5), (5,), (0,), (1, 1), (2, 2, 2, 2), (3, 0, 3), (0, 0, 3))
+                                 for kind in (np.uint8, np.float32))]
+        count = 0
+        for call in calls + [type(owner) for owner in owners]:
+            parameters = inspect.signature(call).parameters.values()
+            needed = [parameter.name for parameter in parameters if parameter.default is inspect.Parameter.empty]
+            given = [dict.fromkeys(needed, array) for array in shapes]
+            for parameter in parameters:
+                is_file = parameter.name.lower() == 'filename'
+                given += [{**dict.fromkeys(needed, np.zeros((3, 8), np.uint8)), parameter.name: object() if is_file and isinstance(wrong, str) else wrong}
+                          for wrong in (object(), 'x', 1 << 70, -1.5, None, [object()], float('nan'))]
+            for arguments in given:
+                count += 1
+                with self.subTest(call=call, arguments=arguments):
                     try:
-                        method(**arguments)
-                    except Exception as e:
-                        with self.subTest(method=method, arguments=arguments):
-                            self.assertNotIn('incompatible function arguments', str(e))
-                            self.assertNotIn('std::', str(e))
-        self.assertGreater(calls, 500)
+                        call(**arguments)
+                    except (TypeError, ValueError, AttributeError, opencv_iib.error) as e:
+                        self.assertNotRegex(str(e), 'incompatible function arguments|std::')
+        self.assertGreater(count, 500)
 
     def test_arrays_without_numbers(self):
         image, points = texture(60, 60), grid()
@@ -86,24 +83,6 @@ class Texts(InFolder):
                         self.expect(opencv_iib.error, '2 or 3 dimensions', lambda: opencv_iib.detect_and_describe(*given, orientation))
                     else:  # None for an image and a mask, like OpenCV's classes
                         opencv_iib.detect_and_describe(*given, orientation)
-
-    def test_no_shape_ends_in_a_bare_error(self):
-        kept = warnings.catch_warnings()
-        kept.__enter__()
-        self.addCleanup(kept.__exit__, None, None, None)
-        warnings.simplefilter('ignore')
-        index = MappedIndex.create(self.folder, [8])
-        index.add(np.zeros((3, 8), np.uint8))
-        owners = IIB(), HessianDetector(), NormalizedDetector(HessianDetector()), HierarchicalMatcher(), index, Camera.parse('PINHOLE,9,9,9,9,4,4')
-        calls = [getattr(opencv_iib, name) for name in opencv_iib.__all__ if inspect.isfunction(getattr(opencv_iib, name))]
-        calls += [method for owner in owners for name, method in inspect.getmembers(owner, inspect.isroutine) if name[0] != '_' and name not in ('save', 'write')]
-        shapes = [[[]], ((),), *(np.zeros(shape, kind) for shape in ((5, 0), (0, 5), (5,), (0,), (1, 1), (2, 2, 2, 2), (3, 0, 3), (0, 0, 3))
-                                 for kind in (np.uint8, np.float32))]
-        for call in calls:
-            needed = [name for name, parameter in inspect.signature(call).parameters.items() if parameter.default is inspect.Parameter.empty]
-            for array in shapes:
-                with self.subTest(call=call, array=array), contextlib.suppress(TypeError, ValueError, AttributeError, opencv_iib.error):
-                    call(**dict.fromkeys(needed, array))
 
     def test_numbers(self):
         self.expect(ValueError, 'maxFeatures is 3000000000', lambda: HessianDetector(3000000000))

@@ -49,13 +49,6 @@ class Names(unittest.TestCase):
             with self.assertRaises(opencv_iib.error, msg=enum):
                 use(len(enum))
 
-    def test_presets(self):
-        for preset, *expected in (('S128', 16, 1), ('S256', 32, 1), ('S512', 64, 1), ('ACCURATE', 170, 1.25), ('COMPACT', 64, 1.25),
-                                  ('TINY', 32, 1.25), ('BALANCED', 64, 1.125), ('VIEWPOINT', 64, 1.25), ('UNIVERSAL', 128, 1.25), ('SMALL', 32, 1.25)):
-            iib = opencv_iib.IIB.createPreset(opencv_iib.Preset[preset], 1)
-            self.assertEqual([iib.descriptorSize(), iib.getScaleFactor()], expected, preset)
-            self.assertEqual(iib.getMapping() == opencv_iib.Mapping.BOXES, preset in ('VIEWPOINT', 'UNIVERSAL', 'SMALL'), preset)
-
     def test_one_version(self):
         self.assertEqual(opencv_iib.__version__, importlib.metadata.version('opencv-iib'))
         self.assertRegex(opencv_iib.OPENCV_VERSION, r'^[45]\.\d')

@@ -1,3 +1,4 @@
+import contextlib
 import os
 import re
 import signal
@@ -23,6 +24,13 @@ def until(arrays, count):
     """Yields the first `count` values, then raises an error."""
     yield from arrays[:count]
     raise Interrupted
+
+
+@contextlib.contextmanager
+def workers(count):
+    with distributed.LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster, \
+            distributed.Client(cluster) as client:
+        yield client
 
 
 class ShardsTest(InFolder):
@@ -133,8 +141,7 @@ class ShardsTest(InFolder):
     def test_workers_of_dask(self):
         shards.write(self.folder, self.codes, 57)
         shards.write(self.folder + '0', [], level_sizes=[8])
-        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
-                                      silence_logs=50) as cluster, distributed.Client(cluster) as client:
+        with workers(2) as client:
             for k in (1, 100):
                 self.expect_found(shards.search(self.folder, self.queries, k, client), k)
             self.assertEqual(shards.search(self.folder + '0', self.queries, 2, client)[0].tolist(), [[-1, -1]] * 30)
@@ -158,20 +165,16 @@ class ShardsTest(InFolder):
     @unittest.skipIf(distributed is None, 'no dask.distributed')
     def test_all_workers_die_together(self):
         shards.write(self.folder, self.codes, 57)
-        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
-                                      silence_logs=50) as cluster, distributed.Client(cluster) as client:
+        with workers(2) as client:
             self.expect_found(self.while_workers_die(client, 2), 5)  # nannies start new workers
-        with distributed.LocalCluster(n_workers=0, dashboard_address=None, silence_logs=50) as cluster, \
-                distributed.Client(cluster) as client, mock.patch.object(shards, '_WITHOUT_WORKERS', 1), \
-                self.assertRaisesRegex(RuntimeError, 'no worker'):
+        with workers(0) as client, mock.patch.object(shards, '_WITHOUT_WORKERS', 1), self.assertRaisesRegex(RuntimeError, 'no worker'):
             shards.search(self.folder, self.queries, 5, client)
 
     @unittest.skipIf(distributed is None, 'no dask.distributed')
     def test_all_workers_die_before_a_result_is_fetched(self):
         shards.write(self.folder, self.codes, 57)
         wait = distributed.wait
-        with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None,
-                                      silence_logs=50) as cluster, distributed.Client(cluster) as client:
+        with workers(2) as client:
             processes = list(client.run(os.getpid).values())
 
             def wait_and_kill(*arguments):

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 import unittest
-from contextlib import redirect_stdout
+from contextlib import redirect_stdout, suppress
 from pathlib import Path
 from unittest import mock
 
@@ -39,10 +39,9 @@ class Output(unittest.TestCase):
                 progress.step()
                 progress.close()
                 _streams.note('a line')
-        with open(os.devnull, 'w') as null, mock.patch('os.close', lambda descriptor: None):
-            os.dup2(null.fileno(), streams[-1].fileno()) if len(streams) == 3 else None  # it must be possible to close it
         for stream in streams[2:]:
-            stream.close()
+            with suppress(OSError):
+                stream.close()
 
     def test_a_name_of_two_lines_is_printed_on_one(self):
         with mock.patch('sys.stderr', io.StringIO()) as stream:
@@ -98,15 +97,6 @@ class Commands(InFolder):
         done = subprocess.run(['bash', '-c', f'{arguments} --out - | head -n 1; exit ${{PIPESTATUS[1]}}'], capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stdout), (0, self.table.decode().splitlines()[0] + '\n'))
         self.assertNotIn('Traceback', done.stderr)
-
-    def test_quiet(self):
-        out = self.folder / 'out'
-        for arguments in ((*self.match, '--out', self.out), ('demo', self.a, self.b, '--out', self.out.with_suffix('.png')),
-                          ('align', self.a, self.b, '--out', out)):
-            self.assertEqual(run_command(*arguments, '--quiet'), (0, '', ''))
-        self.assertEqual(run_command('colmap', self.folder, self.folder / 'c.db', '--points', '200', '--quiet', '--verify', 'magsac')[1:],
-                         ('', ''))
-        self.assertRegex(run_command('match', self.a, self.folder / 'gone', '--quiet')[2], '^match: .*gone')
 
     @unittest.skipUnless(os.path.exists('/dev/full'), 'no full device')
     def test_a_full_disk_behind_standard_output(self):
@@ -196,10 +186,10 @@ class Mistakes(InFolder):
     def test_files_that_cannot_be_meant_end_with_2_before_work(self):
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(self.folder)
-        os.mkdir('images')
-        for name in ('a.png', 'images/a.png', 'images/b.png'):
+        os.makedirs('images/c')
+        for name in ('a.png', 'images/a.png', 'images/b.png', 'images/c/a.png', 'images/c-a.png'):
             cv2.imwrite(name, texture(60, 60))
-        for name, text in (('pairs', 'a.png b.png\n'), ('empty', ''), ('itself', 'a.png a.png\n'), ('unknown', 'no image\n'), ('imu.csv', '1,0,0,0,0,0,9.81\n')):
+        for name, text in (('pairs', 'a.png b.png\n'), ('empty', ''), ('itself', 'a.png a.png\n'), ('unknown', 'no image\n'), ('alike', 'c/a.png b.png\nc-a.png b.png\n'), ('imu.csv', '1,0,0,0,0,0,9.81\n')):
             Path(name).write_text(text)
         files = set(self.folder.rglob('*'))
         pairs, localize = 'match --images images --pairs', 'localize --map images --images images --out'
@@ -213,7 +203,7 @@ class Mistakes(InFolder):
                                       f'map --model images --images gone --out out, localize --map gone --images images --out out, '
                                       f'localize --map images --images gone --out out, {localize} gone/x.csv, localize --map gone --images -, '
                                       f'update --map gone --images images, update --map images --images gone',
-                'is a file': f'align a.png images --out a.png, align a.png images --out a.png/x, {pairs} pairs --out pairs, map --model images --images images --out a.png, '
+                'is a file': f'align a.png images --out a.png, align a.png images --out a.png/x, {pairs} pairs --out pairs, map --model images --images images --out a.png, localize --map images --images a.png --out out, '
                              f'map --model images --images images --out a.png/x, {localize} a.png/x, update --map images --images images --out a.png',
                 'an input too': f'demo a.png a.png --out a.png, match a.png a.png --out a.png, match images/a.png images/a.png --mask a.png --picture a.png, '
                                 f'match images/a.png images/a.png --mask a.png --out a.png, demo images/a.png images/a.png --mask a.png --out a.png, '
@@ -232,6 +222,7 @@ class Mistakes(InFolder):
                 'has no pair': f'{pairs} empty --out out, colmap images x.db --pairs empty',
                 'a.png is paired with itself': f'{pairs} itself --out out, colmap images x.db --pairs itself',
                 'no image is called no or image': f'{pairs} unknown --out out, colmap images x.db --pairs unknown',
+                '2 pairs would write c-a.png/b.png, since / becomes -: rename an image': f'{pairs} alike --out out',
                 'goes with': f'match --pairs pairs, {pairs} pairs, {pairs} pairs --out out a.png, {pairs} pairs --out out --picture x',
                 '60 x 60': 'match a.png a.png --camera PINHOLE;9;9;400;400;4;4',
                 'its camera has 9 x 9': f'{pairs} pairs --out out --camera PINHOLE;9;9;5;5;4;4'}.items():

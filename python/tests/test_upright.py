@@ -1,5 +1,4 @@
 """Images that are stored rotated, as telephones write them."""
-import csv
 import json
 import struct
 import unittest
@@ -9,7 +8,7 @@ import numpy as np
 
 import opencv_iib
 from collection import Collection
-from opencv_iib import _upright
+from opencv_iib import _orientation
 from opencv_iib.align import align
 from opencv_iib.colmap import FeatureOptions
 from opencv_iib._exif import MIRRORED, exif_orientation
@@ -17,7 +16,7 @@ from opencv_iib._image_file import ImageFile
 from opencv_iib.features import Features
 from opencv_iib.measure import match_images
 from opencv_iib.localization import Camera
-from support import cv2, optional, run_command, texture
+from support import cv2, optional, rows_of, run_command, texture
 
 h5py = optional('h5py')
 
@@ -33,7 +32,7 @@ def png(image, orientation):
 
 
 def stored(image, orientation):
-    return _upright.upright(image, STORED[orientation])
+    return _orientation.upright(image, STORED[orientation])
 
 
 class Pixels(unittest.TestCase):
@@ -43,9 +42,9 @@ class Pixels(unittest.TestCase):
         expected = {1: image, 2: np.fliplr(image), 3: np.rot90(image, 2), 4: np.flipud(image), 5: image.T, 6: np.rot90(image, -1),
                     7: np.rot90(image, 2).T, 8: np.rot90(image)}
         for orientation, turned in expected.items():
-            np.testing.assert_array_equal(_upright.upright(image, orientation), turned)
-            np.testing.assert_array_equal(_upright.upright(stored(image, orientation), orientation), image)
-            turn = _upright.Turn(orientation, 30, 20)
+            np.testing.assert_array_equal(_orientation.upright(image, orientation), turned)
+            np.testing.assert_array_equal(_orientation.upright(stored(image, orientation), orientation), image)
+            turn = _orientation.Turn(orientation, 30, 20)
             y, x = np.mgrid[:turned.shape[0], :turned.shape[1]].reshape(2, -1)
             at = turn.points(np.column_stack([x, y]).astype(np.float32)).astype(int)
             np.testing.assert_array_equal(image[at[:, 1], at[:, 0]], turned.ravel())
@@ -65,7 +64,7 @@ class Pixels(unittest.TestCase):
                                     ('SIMPLE_DIVISION', 1, 1), ('DIVISION', 2, 1), ('SIMPLE_FISHEYE', 1, 0), ('FISHEYE', 2, 0), ('EUCM', 2, 2)):
             camera = Camera(model, 640, 480, [300, 310][:focals] + [330, 230] + others[:more])
             for orientation in ROTATIONS:
-                turn = _upright.Turn(orientation, 640, 480)
+                turn = _orientation.Turn(orientation, 640, 480)
                 upright = camera.upright(orientation)
                 np.testing.assert_allclose(upright.upright({3: 3, 6: 8, 8: 6}[orientation]).params, camera.params, atol=1e-12)
                 self.assertEqual((upright.width, upright.height), (640, 480) if orientation == 3 else (480, 640))
@@ -116,7 +115,7 @@ class Commands(Collection):
         for orientation in TURNED:
             path = self.write(self.b, orientation)
             found = match_images(self.first, path, options=FeatureOptions(points=300))
-            at = _upright.Turn(orientation, *stored(self.b, orientation).shape[1::-1]).points(expected.matches.points2)
+            at = _orientation.Turn(orientation, *stored(self.b, orientation).shape[1::-1]).points(expected.matches.points2)
             np.testing.assert_allclose(found.matches.points2, at, atol=1e-3)
             np.testing.assert_array_equal(found.matches.points1, expected.matches.points1)
             swapped = expected.matches.covariances[:, [2, 1, 0] if orientation > 4 else [0, 1, 2]]
@@ -154,8 +153,7 @@ class Commands(Collection):
         for out in outs:
             self.assertEqual(run_command('match', '--pairs', self.folder / 'pairs.txt', '--images', self.folder, '--out', out, '--points', 300)[0], 0)
         reported = [json.loads((self.folder / 'm.json').read_text())['rotation'], float(np.load(self.folder / 'm.npz')['rotation'])]
-        with open(outs[0] / 'pairs.csv', newline='') as file:
-            reported.append(float(next(csv.DictReader(file))['rotation']))
+        reported.append(float(rows_of(outs[0], 'pairs.csv')[0]['rotation']))
         if h5py:
             with h5py.File(outs[1]) as file:
                 reported.append(float(file['a.png/b.png'].attrs['rotation']))
@@ -167,7 +165,7 @@ class Commands(Collection):
     def test_align(self):
         done = align(self.first, [self.write(self.b, orientation) for orientation in TURNED], self.folder / 'out', 1)
         for orientation, each in zip(TURNED, done):
-            turn = _upright.Turn(orientation, *stored(self.b, orientation).shape[1::-1])
+            turn = _orientation.Turn(orientation, *stored(self.b, orientation).shape[1::-1])
             back = np.reshape(each.transform, (3, 3)) @ turn.matrix  # of the upright image
             np.testing.assert_allclose(back, [[1, 0, 30], [0, 1, 20], [0, 0, 1]], atol=.1)
             self.assertAlmostEqual((each.rotation + 180) % 360, 180, delta=.1)
@@ -177,7 +175,7 @@ class Commands(Collection):
         done = align(self.write(self.b, 6), [self.first], self.folder / 'other', 1)
         self.assertEqual(cv2.imread(str(self.folder / 'other' / done[0].file)).shape, (400, 300, 3))
         np.testing.assert_allclose(np.reshape(done[0].transform, (3, 3)) @ [130, 70, 1],
-                                   _upright.Turn(6, 300, 400).matrix @ [100, 50, 1], atol=.2)
+                                   _orientation.Turn(6, 300, 400).matrix @ [100, 50, 1], atol=.2)
 
     def test_align_says_what_it_turned(self):
         picture = cv2.resize(cv2.GaussianBlur(np.random.default_rng(2).integers(0, 256, (120, 160), np.uint8), (0, 0), 1), (640, 480))

@@ -16,7 +16,7 @@ import numpy as np
 
 from opencv_iib._arguments import Path
 from opencv_iib._files import replaced
-from opencv_iib._images import in_order
+from opencv_iib._image_names import in_order
 from opencv_iib._partial import close_partial, open_partial
 
 SCHEMA_VERSION = 3800
@@ -124,7 +124,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         elif old != [settings]:
             for table, in self._db.execute("SELECT name FROM sqlite_master WHERE type='table'").fetchall():
                 self._db.execute(f'DELETE FROM {table}')
-            self._db.execute('INSERT INTO iib_settings VALUES (?)', (json.dumps(settings, sort_keys=True),))
+            self._insert('iib_settings', json.dumps(settings, sort_keys=True))
 
     def _grow(self) -> None:
         """Copies what the finished database holds, without the columns that a newer COLMAP has added."""
@@ -154,6 +154,10 @@ class Database(contextlib.AbstractContextManager['Database']):
         with self._db:  # commits, or rolls back after an error, unless that has done so, as a full disk does
             self._db.execute('BEGIN')
             yield
+
+    def _insert(self, table: str, *values: Any) -> Optional[int]:
+        """Adds a row, or replaces that of its key. :param table: its name, perhaps with columns. :return: the key."""
+        return self._db.execute(f'INSERT OR REPLACE INTO {table} VALUES ({", ".join("?" * len(values))})', values).lastrowid
 
     # Images
 
@@ -187,7 +191,7 @@ class Database(contextlib.AbstractContextManager['Database']):
         """Adds the codes of an image that an earlier run has described, or returns False if its keypoints differ."""
         same = np.array_equal(self.load_keypoints(image)[:len(keypoints)], keypoints)  # points of searches follow them
         if same:
-            self._db.execute('INSERT INTO iib_codes VALUES (?, ?, ?, ?)', (image, *codes.shape, codes.tobytes()))
+            self._insert('iib_codes', image, *codes.shape, codes.tobytes())
         return same
 
     def add_image(self, name: str, stamp: str, width: int, height: int, model: str, params: Sequence[float], prior: bool,
@@ -204,14 +208,11 @@ class Database(contextlib.AbstractContextManager['Database']):
             number, free = self._remove(name)
             same = self._db.execute('SELECT camera_id FROM cameras WHERE (model, width, height, params, prior_focal_length) = '
                                     '(?, ?, ?, ?, ?)', values).fetchone() if shared else None
-            camera = same[0] if same else self._db.execute(
-                'INSERT INTO cameras (camera_id, model, width, height, params, prior_focal_length) VALUES (?, ?, ?, ?, ?, ?)',
-                (free, *values)).lastrowid
-            image = self._db.execute('INSERT INTO images (image_id, name, camera_id) VALUES (?, ?, ?)', (number, name, camera)).lastrowid
-            self._db.execute('INSERT INTO keypoints VALUES (?, ?, ?, ?)',
-                             (image, *keypoints.shape, np.ascontiguousarray(keypoints, np.float32).tobytes()))
-            self._db.execute('INSERT INTO iib_codes VALUES (?, ?, ?, ?)', (image, *codes.shape, codes.tobytes()))
-            self._db.execute('INSERT INTO iib_files VALUES (?, ?)', (name, stamp))
+            camera = same[0] if same else self._insert('cameras (camera_id, model, width, height, params, prior_focal_length)', free, *values)
+            image = self._insert('images (image_id, name, camera_id)', number, name, camera)
+            self._insert('keypoints', image, *keypoints.shape, np.ascontiguousarray(keypoints, np.float32).tobytes())
+            self._insert('iib_codes', image, *codes.shape, codes.tobytes())
+            self._insert('iib_files', name, stamp)
 
     def load_codes(self, image: int) -> np.ndarray:
         """N x bytes uint8."""
@@ -255,16 +256,13 @@ class Database(contextlib.AbstractContextManager['Database']):
             self._write_pair(pair_id(a, b), matches, inliers, fundamental)
 
     def _write_pair(self, key: int, matches: np.ndarray, inliers: Optional[np.ndarray], fundamental: Optional[np.ndarray]) -> None:
-        self._db.execute('INSERT OR REPLACE INTO matches VALUES (?, ?, 2, ?)',
-                         (key, len(matches), np.ascontiguousarray(matches, np.uint32).tobytes()))
+        self._insert('matches', key, len(matches), 2, np.ascontiguousarray(matches, np.uint32).tobytes())
         if inliers is not None:
             zero = np.zeros((3, 3))
             matrix = zero if fundamental is None else np.ascontiguousarray(fundamental, np.float64)
-            self._db.execute('INSERT OR REPLACE INTO two_view_geometries (pair_id, rows, cols, data, config, F, E, H, qvec, tvec) '
-                             'VALUES (?, ?, 2, ?, ?, ?, ?, ?, ?, ?)',
-                             (key, len(inliers), np.ascontiguousarray(inliers, np.uint32).tobytes(),
-                              UNCALIBRATED if len(inliers) else 0, matrix.tobytes(), zero.tobytes(),
-                              zero.tobytes(), np.array([1., 0, 0, 0]).tobytes(), np.zeros(3).tobytes()))
+            self._insert('two_view_geometries (pair_id, rows, cols, data, config, F, E, H, qvec, tvec)', key, len(inliers), 2,
+                         np.ascontiguousarray(inliers, np.uint32).tobytes(), UNCALIBRATED if len(inliers) else 0,
+                         *(array.tobytes() for array in (matrix, zero, zero, np.array([1., 0, 0, 0]), np.zeros(3))))
 
     # Pairs that were searched
 
@@ -275,7 +273,7 @@ class Database(contextlib.AbstractContextManager['Database']):
 
     def add_not_found(self, a: int, b: int) -> None:
         """Marks a pair as searched, and keeps the matches that it has."""
-        self._db.execute('INSERT INTO iib_searched VALUES (?, 0)', (pair_id(a, b),))
+        self._insert('iib_searched', pair_id(a, b), 0)
 
     def add_found(self, pair: tuple[int, int], keypoints: Sequence[np.ndarray], matches: np.ndarray, fundamental: np.ndarray) -> None:
         """Replaces the matches of a pair by those of a search, in one transaction.
@@ -285,7 +283,7 @@ class Database(contextlib.AbstractContextManager['Database']):
             for image, rows in zip(pair, keypoints):
                 self._db.execute('UPDATE keypoints SET rows=?, data=? WHERE image_id=?', (len(rows), rows.tobytes(), image))
             self._write_pair(pair_id(*pair), matches, matches, fundamental)
-            self._db.execute('INSERT INTO iib_searched VALUES (?, 1)', (pair_id(*pair),))
+            self._insert('iib_searched', pair_id(*pair), 1)
 
     def counts(self) -> dict[str, int]:
         """Images, keypoints, pairs that were matched, those with matches, matches, verified pairs and verified matches."""

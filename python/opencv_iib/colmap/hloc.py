@@ -9,8 +9,8 @@ import numpy as np
 from opencv_iib._arguments import MissingFile, Path
 from opencv_iib._files import check_outputs, output_file, replaced
 from opencv_iib._hdf5 import new_hdf5
-from opencv_iib._images import is_listable
-from opencv_iib._pairs import pair_name
+from opencv_iib._image_names import is_listable
+from opencv_iib._pair_list import pair_name
 from opencv_iib.colmap.database import MAX_IMAGE_ID, opened
 
 SHORT = 2 ** 15 - 1  # hloc's own files hold int16; its readers take any integers

@@ -5,31 +5,34 @@ import dataclasses
 import functools
 import os
 import posixpath
+import shutil
 import socket
+import subprocess
+import tempfile
 from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
 
 import numpy as np
 
 import opencv_iib
-from opencv_iib import _pairs as pair_lists
 from opencv_iib._arguments import InvalidOption, Path, check_choice, check_count, number, sequence
 from opencv_iib._camera import Camera
-from opencv_iib._exif import exif_focal_length, gps_place
+from opencv_iib._exif import exif_focal_length
 from opencv_iib._files import check_is_folder, check_outputs, only_writer, output_file
 from opencv_iib._image_file import ImageFile, Masks, check_sizes
-from opencv_iib._images import find_images, import_cv2, is_listable, is_utf8
+from opencv_iib._image_names import find_images, is_listable, is_utf8
+from opencv_iib._images import import_cv2
+from opencv_iib._pair_list import BLOCK, Pair, check_list, tiles
 from opencv_iib._parallel import Cluster, Threads, in_parallel, thread_count
 from opencv_iib._progress import Progress, with_progress
 from opencv_iib._streams import note
-from opencv_iib._two_views import colmap_binary, magsac, matches_importer
+from opencv_iib._two_views import magsac
 from opencv_iib.colmap.database import CAMERA_MODELS, Database, SettingsChanged, check_settings, settings_of
+from opencv_iib.colmap.pairs import PAIRS, Pairs, gps_places, list_pairs
 from opencv_iib.colmap.search import search_pairs
 from opencv_iib.features import FeatureOptions, Features, to_colmap
 from opencv_iib.matcher import HierarchicalMatcher
 
-PAIRS = ('exhaustive', 'sequential', 'retrieval', 'gps')
 VERIFIERS = ('auto', 'colmap', 'magsac', 'none')
-Pairs = tuple[Iterator[tuple[int, int]], Optional[int]]  # of image ids, and how many if that is known
 
 
 @dataclasses.dataclass(frozen=True)
@@ -89,7 +92,7 @@ class Options:
         if self.pairs not in PAIRS and not os.path.isfile(self.pairs):
             raise InvalidOption(f'pairs: {self.pairs} is neither a file nor one of {", ".join(PAIRS)}')
         check_choice(self.verify, 'verify', VERIFIERS)
-        if self.verify == 'colmap' and colmap_binary() is None:
+        if self.verify == 'colmap' and shutil.which('colmap') is None:
             raise InvalidOption('verify is colmap, but there is no program colmap: install it, or take magsac')
         check_count(self.neighbours, 'neighbours')
         if not 0 < number(self.ratio, 'ratio') <= 1:
@@ -162,7 +165,7 @@ def describe_again(database: Database, folder: str, names: Sequence[str], option
         return
     needed = set(without.values())
     if options.pairs != 'retrieval':
-        pairs, _ = list_pairs(database, folder, names, options, level_sizes)
+        pairs, _ = list_pairs(database, folder, names, options.pairs, options.neighbours, level_sizes)
         needed &= {image for pair in pairs if not database.has_pair(*pair) for image in pair}
     missing = [name for name, image in without.items() if image in needed]
     described = in_parallel(functools.partial(describe_image, os.path.abspath(folder), options), missing, pool)
@@ -172,40 +175,14 @@ def describe_again(database: Database, folder: str, names: Sequence[str], option
                              'database with force (--force)')
 
 
-def list_pairs(database: Database, folder: str, names: Iterable[str], options: Options, level_sizes: tuple[int, ...]) -> Pairs:
-    """Pairs of image ids, and their number if it is known."""
-    numbers = database.image_ids()
-    ids = list(numbers.values())
-    count = len(ids)
-    if options.pairs == 'exhaustive':
-        chosen, total = pair_lists.exhaustive(count), count * (count - 1) // 2
-    elif options.pairs == 'sequential':
-        chosen, total = pair_lists.sequential(count, options.neighbours), sum(min(options.neighbours, count - 1 - i) for i in range(count))
-    elif options.pairs == 'retrieval':
-        voted = pair_lists.retrieval(count, lambda i: database.load_codes(ids[i]), level_sizes, options.neighbours)
-        chosen, total = pair_lists.distinct(voted), None
-    elif options.pairs == 'gps':
-        places = [gps_place(os.path.join(folder, name)) for name in numbers]
-        chosen, total = pair_lists.distinct(pair_lists.nearest(places, options.neighbours)), None
-    else:
-        return pair_lists.distinct(pair_lists.read_list(options.pairs, {**dict.fromkeys(names), **numbers})[0]), None
-    return ((ids[a], ids[b]) for a, b in chosen), total
-
-
-@functools.lru_cache(maxsize=1)
-def _matcher(level_sizes: tuple[int, ...], ratio: float) -> HierarchicalMatcher:
-    matcher = HierarchicalMatcher.create(level_sizes, crossCheck=True)
-    matcher.setMaxRatio(ratio)
-    return matcher
-
-
 def match_tile(level_sizes: tuple[int, ...], ratio: float, verify: str,
-               tile: tuple[list[tuple[int, int]], dict[int, Any]]) -> list[tuple[Any, ...]]:
+               tile: tuple[list[Pair], dict[int, Any]]) -> list[tuple[Any, ...]]:
     """Arguments of Database.add_pair for each pair of image ids, from the codes and points of images by their ids."""
-    found = []
+    found, matcher = [], HierarchicalMatcher.create(level_sizes, crossCheck=True)
+    matcher.setMaxRatio(ratio)
     for a, b in tile[0]:
         (codes_a, points_a), (codes_b, points_b) = tile[1][a], tile[1][b]
-        matches = opencv_iib.match(codes_a, codes_b, _matcher(level_sizes, ratio)).pairs
+        matches = opencv_iib.match(codes_a, codes_b, matcher).pairs
         if verify == 'magsac':
             inliers, matrix = magsac(points_a[matches[:, 0]], points_b[matches[:, 1]])
             found.append((matches, matches[inliers], matrix))
@@ -218,19 +195,19 @@ def match_pairs(database: Database, listed: Pairs, ratio: float, level_sizes: tu
     """Matches, and with magsac verifies, the pairs that the database does not hold.
 
     :param listed: pairs of image ids, each once, and their number if it is known."""
-    images = functools.lru_cache(2 * pair_lists.BLOCK + 2)(lambda i: pool.hold(database.load_codes(i), database.load_keypoints(i)[:, :2]))
+    images = functools.lru_cache(2 * BLOCK + 2)(lambda i: pool.hold(database.load_codes(i), database.load_keypoints(i)[:, :2]))
     pairs, total = listed
     progress = Progress('matching', total)
 
-    def missing() -> Iterator[tuple[int, int]]:
+    def missing() -> Iterator[Pair]:
         for a, b in pairs:
             if database.has_pair(a, b):
                 progress.step()
             else:
                 yield a, b
 
-    def jobs() -> Iterator[tuple[list[tuple[int, int]], dict[int, Any]]]:
-        for tile in pair_lists.tiles(missing(), pool.tile_side):
+    def jobs() -> Iterator[tuple[list[Pair], dict[int, Any]]]:
+        for tile in tiles(missing(), pool.tile_side):
             yield tile, {image: images(image) for pair in tile for image in pair}
 
     match = functools.partial(match_tile, level_sizes, ratio, verify)
@@ -239,6 +216,24 @@ def match_pairs(database: Database, listed: Pairs, ratio: float, level_sizes: tu
             database.add_pair(*pair, *result)
             progress.step()
     progress.close()
+
+
+def matches_importer(database: str, pairs: Iterable[tuple[str, str]]) -> None:
+    """Has COLMAP verify the matches of a database. :raises RuntimeError: with the program's last lines, if it fails."""
+    with tempfile.NamedTemporaryFile('w', suffix='.txt', encoding='utf-8', delete=False) as file:
+        for a, b in pairs:
+            file.write(f'{a} {b}\n')
+    try:
+        def run(*arguments: str) -> subprocess.CompletedProcess[str]:
+            return subprocess.run([str(shutil.which('colmap')), 'matches_importer', *arguments], capture_output=True, text=True,
+                                  env={**os.environ, 'QT_QPA_PLATFORM': 'offscreen'})
+        gpu = 'FeatureMatching' if '--FeatureMatching.use_gpu' in run('--help').stdout else 'SiftMatching'
+        done = run('--database_path', database, '--match_list_path', file.name, '--match_type', 'pairs', f'--{gpu}.use_gpu', '0')
+        if done.returncode:
+            tail = '\n'.join((done.stdout + done.stderr).splitlines()[-5:])
+            raise RuntimeError(f'colmap matches_importer failed:\n{tail}')
+    finally:
+        os.unlink(file.name)
 
 
 def build_database(images: Path, database: Path, options: Options = Options(), force: bool = False,
@@ -267,15 +262,13 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
         raise ValueError(f'no images below {images}')
     left_out = 0  # lines of the list of pairs
     if options.pairs not in PAIRS:
-        left_out = pair_lists.check_list(options.pairs, {name: number for number, name in enumerate(names)}, log)[1]
-    if options.pairs == 'gps' and all(gps_place(os.path.join(images, name)) is None for name in names):
+        left_out = check_list(options.pairs, {name: number for number, name in enumerate(names)}, log)[1]
+    if options.pairs == 'gps' and all(place is None for place in gps_places(images, names)):
         raise ValueError(f'no image below {images} has a place by GPS in its EXIF data')
-    verify = options.verify
+    unlistable, verify = [name for name in names if not is_listable(name)], options.verify
     if verify == 'auto':
-        verify = 'colmap' if colmap_binary() and all(map(is_listable, names)) else 'magsac'
-    binary = colmap_binary() if verify == 'colmap' else None
-    unlistable = [name for name in names if binary and not is_listable(name)]
-    if unlistable:
+        verify = 'magsac' if unlistable or shutil.which('colmap') is None else 'colmap'
+    if verify == 'colmap' and unlistable:
         raise ValueError(f'{unlistable[0]}: matches_importer reads no names with blanks or a leading #; rename it, or '
                          'verify by magsac (--verify)')
     for folder, _ in options._cameras():
@@ -299,11 +292,12 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
         if failed == len(names):
             raise ValueError(f'none of the {failed} images below {images} can be described')
         describe_again(target, images, names, options, sizes, pool)
-        match_pairs(target, list_pairs(target, images, names, options, sizes), options.ratio, sizes, verify, pool)
-        if binary is not None:
+        pairs = list_pairs(target, images, names, options.pairs, options.neighbours, sizes)
+        match_pairs(target, pairs, options.ratio, sizes, verify, pool)
+        if verify == 'colmap':
             log('verifying with colmap matches_importer')
             by_number = {number: name for name, number in target.image_ids().items()}
-            matches_importer(binary, target.partial, ((by_number[a], by_number[b]) for a, b in target.pairs()))
+            matches_importer(target.partial, ((by_number[a], by_number[b]) for a, b in target.pairs()))
         if options.search and verify != 'none' and target.changed:
             search_pairs(target, images, options.features, options.pairs == 'retrieval', pool)
         counts = {**target.counts(), 'failed': failed, **({'lines left out': left_out} if left_out else {})}

@@ -15,7 +15,7 @@ from opencv_iib._arrays import as_mask
 from opencv_iib._camera import AnyCamera, Camera
 from opencv_iib._files import check_folder, check_is_folder
 from opencv_iib._image_file import ImageFile, Masks
-from opencv_iib._images import in_order
+from opencv_iib._image_names import in_order
 from opencv_iib._parallel import thread_count
 from opencv_iib._progress import Progress
 from opencv_iib._streams import note
@@ -25,12 +25,6 @@ from opencv_iib.localization.run import images_of, locate
 
 LEFT_OUT = ': left out of the map'
 UNREAD = (' cannot be read' + LEFT_OUT).encode()
-
-
-def _count(file: str) -> int:
-    """The number of entries of a binary file of COLMAP."""
-    with open(file, 'rb') as opened:
-        return int.from_bytes(opened.read(8), 'little')
 
 
 def _check_new(out: Path, force: bool) -> None:
@@ -117,7 +111,7 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
             _core.setNumThreads(threads)
             if progress is not None:
                 progress.close()
-    known, seen = (_count(os.path.join(target, name)) for name in ('images.bin', 'points3D.bin'))
+    known, seen = (int(np.fromfile(os.path.join(target, name), '<u8', 1)[0]) for name in ('images.bin', 'points3D.bin'))  # which begin with counts
     return {'images': known - left_out, 'points': seen, 'left out': left_out}
 
 

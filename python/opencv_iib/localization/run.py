@@ -3,9 +3,7 @@ from __future__ import annotations
 
 import collections
 import contextlib
-import csv
 import functools
-import io
 import os
 import re
 from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
@@ -17,13 +15,14 @@ from opencv_iib import _core, error
 from opencv_iib._arguments import InvalidOption, Path
 from opencv_iib._camera import AnyCamera, Camera, as_camera
 from opencv_iib._exif import exif_focal_length
-from opencv_iib._files import Results, check_folder, check_is_folder, check_outputs, write_whole
+from opencv_iib._files import Results, check_folder, check_is_folder, check_outputs, csv_bytes, write_whole
 from opencv_iib._image_file import ImageFile, Masks, check_sizes
-from opencv_iib._images import find_images, import_cv2, is_utf8, write_picture
+from opencv_iib._image_names import find_images, is_utf8
+from opencv_iib._images import import_cv2, write_picture
 from opencv_iib._parallel import Threads, in_parallel, thread_count
 from opencv_iib._progress import with_progress
 from opencv_iib._streams import is_open_file, note
-from opencv_iib._upright import BACK
+from opencv_iib._orientation import BACK
 from opencv_iib.features import check_max_size
 from opencv_iib.localization.imu import by_time, read_imu, smooth_poses
 from opencv_iib.localization.localizer import Localizer, Location
@@ -114,7 +113,8 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
     check_sizes(folder, names, locator.masks, locator.camera)
 
     def job(name: str) -> tuple[Camera, Location]:
-        check_name(name)
+        if not is_utf8(name) or name.startswith('#') or len(name.splitlines()) > 1:
+            raise ValueError('the trajectory cannot hold this name: rename it in UTF-8, without a leading # or a line break')
         return locator(os.path.join(folder, name), name)
 
     located = in_parallel(job, names, Threads(thread_count(workers)), (ValueError, OSError, error))
@@ -133,12 +133,6 @@ def images_of(folder: Path, out: Path = '', log: Callable[[str], None] = note) -
     if not names:
         raise ValueError(f'no images below {folder}')
     return names
-
-
-def check_name(name: str) -> None:
-    """:raises ValueError: for a name that the results cannot hold."""
-    if not is_utf8(name) or name.startswith('#') or len(name.splitlines()) > 1:
-        raise ValueError('the trajectory cannot hold this name: rename it in UTF-8, without a leading # or a line break')
 
 
 def labels_of(names: Sequence[str]) -> dict[str, str]:
@@ -284,7 +278,6 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
 
 def _table(frames: Sequence[list[Any]], poses: Sequence[Optional[NDArray[np.float64]]]) -> bytes:
     """The frames with their poses, as CSV."""
-    text, header = io.StringIO(newline=''), [*FRAME, *(f'{a}_{b}' for n, a in enumerate(AXES) for b in AXES[n:])]
+    header = [*FRAME, *(f'{a}_{b}' for n, a in enumerate(AXES) for b in AXES[n:])]
     rows = (row if pose is None else [*row, *[''] * (len(header) - len(row)), *_numbers(pose)] for row, pose in zip(frames, poses))
-    csv.writer(text).writerows([[*header, *POSE], *rows])
-    return text.getvalue().encode(errors='backslashreplace')
+    return csv_bytes([[*header, *POSE], *rows])

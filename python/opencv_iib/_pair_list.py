@@ -1,17 +1,14 @@
-"""Chooses pairs of images to match. Pairs are generated one by one, so that many need no memory."""
+"""Lists of pairs of images, as COLMAP and hloc write them, and the order in which their pairs are matched."""
 from __future__ import annotations
 
 import itertools
 import os
 import posixpath
 import re
-from typing import Callable, Container, Iterable, Iterator, Mapping, Optional, Sequence
-
-import numpy as np
+from typing import Callable, Container, Iterable, Iterator, Mapping, Optional
 
 from opencv_iib._arguments import InvalidOption, MissingFile, Path
-from opencv_iib._images import is_utf8
-from opencv_iib.matcher import HierarchicalMatcher
+from opencv_iib._image_names import is_utf8
 
 Pair = tuple[int, int]
 BLOCK = 50  # images a block: the codes of two blocks are in memory while their pairs are matched
@@ -19,15 +16,6 @@ BLOCK = 50  # images a block: the codes of two blocks are in memory while their 
 
 def pair_name(a: str, b: str) -> str:
     return '/'.join(name.replace('/', '-') for name in (a, b))
-
-
-def exhaustive(count: int, block: int = BLOCK) -> Iterator[Pair]:
-    """All pairs of 0..count-1, block by block, for a cache of 2 * `block` images."""
-    for first in range(0, count, block):
-        for second in range(first, count, block):
-            for a in range(first, min(first + block, count)):
-                for b in range(max(second, a + 1), min(second + block, count)):
-                    yield a, b
 
 
 def tiles(pairs: Iterable[Pair], side: int) -> Iterator[list[Pair]]:
@@ -39,33 +27,6 @@ def tiles(pairs: Iterable[Pair], side: int) -> Iterator[list[Pair]]:
     while block := list(itertools.islice(pairs, BLOCK * BLOCK if side > 1 else 1)):
         for _, found in itertools.groupby(sorted(block, key=tile), tile):
             yield list(found)
-
-
-def distinct(pairs: Iterable[Pair]) -> Iterator[Pair]:
-    """Each pair once, whichever image comes first."""
-    seen: set[Pair] = set()
-    for a, b in pairs:
-        pair = min(a, b), max(a, b)
-        if pair not in seen:
-            seen.add(pair)
-            yield pair
-
-
-def sequential(count: int, overlap: int) -> Iterator[Pair]:
-    """Each image with the next `overlap` by name."""
-    for a in range(count):
-        for b in range(a + 1, min(a + 1 + overlap, count)):
-            yield a, b
-
-
-def nearest(places: Sequence[Optional[np.ndarray]], neighbours: int) -> Iterator[Pair]:
-    """Each image with those nearest to it, without images that have no place. Coordinates that are NaN in one of two places are ignored."""
-    placed = [i for i, place in enumerate(places) if place is not None]
-    known = np.array([places[i] for i in placed], float)
-    for a, place in zip(placed, known):
-        for b in np.argsort(np.linalg.norm(np.nan_to_num(known - place), axis=1), kind='stable')[:neighbours + 1]:
-            if placed[b] != a:
-                yield a, placed[b]
 
 
 def read_list(path: Path, numbers: Mapping[str, Optional[int]]) -> tuple[list[Pair], list[str]]:
@@ -121,21 +82,3 @@ def _names(line: str, known: Container[str]) -> list[str]:
                 return found
     words = re.split(SEPARATOR, alone)
     return [name(word) for word in words] if len(words) == 2 else []
-
-
-def retrieval(count: int, load: Callable[[int], np.ndarray], level_sizes: Sequence[int], neighbours: int,
-              sample: int = 200) -> Iterator[Pair]:
-    """Each image with those that most of its codes vote for.
-
-    Each of the `sample` strongest codes votes for the image of its nearest code among all other images' samples. Memory: count * sample * bytes."""
-    matcher = HierarchicalMatcher.create(level_sizes)
-    matcher.add([load(i)[:sample] for i in range(count)])
-    for a in range(count):
-        codes = load(a)[:sample]
-        images = matcher.knnMatchArrays(codes, k=3)[2]  # three, since an image's own codes have distance 0
-        others = (images >= 0) & (images != a)
-        first = np.take_along_axis(images, others.argmax(axis=1)[:, None], 1)[others.any(axis=1)]
-        votes = np.bincount(first.ravel(), minlength=count)
-        for b in np.argsort(-votes, kind='stable')[:neighbours]:
-            if votes[b] > 0:
-                yield a, int(b)
