@@ -2,7 +2,7 @@
 # Learns a selection: scripts/train.sh --out=selection.yml FOLDER...; build/tools/training/iib_train --help lists the options.
 # With --presets or --presets=FILE first, it trains the built-in presets, in place or into FILE, on tilde_webcam and amos_daynight,
 # which are in $OPENCV_TEST_DATA_PATH/illumination, and on the walks in FOLDER, which is WALKS/path of
-# scripts/helpers/synthetic.sh WALKS --scenes room terrain --frames 20 --quick
+# tools/synthetic/views.py WALKS/path --scenes room terrain --seed 0 --walk 20 --depth
 . "$(dirname "$0")/helpers/lib.sh"
 
 case "${1:-}" in

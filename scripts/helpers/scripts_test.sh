@@ -54,7 +54,6 @@ refused scripts/helpers/newcomer.sh bookworm trixie
 refused scripts/helpers/opencv_source.sh unknown
 refused scripts/helpers/servers_test.sh no-such-python
 refused scripts/helpers/python_test.sh no-such-library
-refused scripts/helpers/synthetic.sh
 refused scripts/helpers/versions.sh trixie/
 refused .ci/nightly no-such-step
 

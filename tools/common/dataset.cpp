@@ -64,7 +64,7 @@ bool addSequence(const std::string& folder, std::vector<ImagePair>& pairs)
     ImagePair common;
     common.set = baseName(fs::getParent(folder));
     common.sequence = baseName(folder);
-    common.kind = fs::exists(fs::join(folder, "corrs.txt")) ? "marked" : kindOf(common.sequence);
+    common.kind = kindOf(common.sequence);
     common.referenceFile = images[1];
     for (const char* extra : {"depth", "labels"})
         if (fs::exists(fs::join(fs::join(folder, extra), "1.png")))
@@ -130,16 +130,11 @@ void visitFolders(const std::vector<std::string>& roots, const std::function<boo
     }
 }
 
-std::vector<ImagePair> findPairs(const std::vector<std::string>& roots, bool marked)
+std::vector<ImagePair> findPairs(const std::vector<std::string>& roots)
 {
     std::vector<ImagePair> pairs;
-    visitFolders(roots, [&](const std::string& folder) {
-        const bool isWalk = fs::isDirectory(fs::join(folder, "frames"));  // the camera moves
-        return !isWalk && !holdsViews(folder) && !addSequence(folder, pairs);
-    });
-    pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
-                        [&](const ImagePair& pair) { return (pair.kind == "marked") != marked; }),
-            pairs.end());
+    visitFolders(roots,
+            [&](const std::string& folder) { return !holdsViews(folder) && !addSequence(folder, pairs); });
     std::set<std::string> names;
     for (const ImagePair& pair : pairs)
         if (!names.insert(pair.name()).second)

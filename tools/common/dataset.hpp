@@ -11,8 +11,7 @@
 namespace iib_tools {
 
 /** The change between the images of a sequence: "light", "blur", "jpeg", "viewpoint" or "zoom" (with rotation). Derived
-from the names of Oxford's sequences and HPatches' prefix `v_`; "marked" for pairs with hand-made correspondences;
-otherwise "light". */
+from the names of Oxford's sequences and HPatches' prefix `v_`; otherwise "light". */
 typedef std::string Kind;
 
 //! A reference image and a target image of the same scene; only loadPair reads the files.
@@ -51,13 +50,11 @@ std::string stem(const std::string& path);
 
 /** Finds all pairs (1, k) below the given folders, up to four levels deep, in the layouts
  - `1.png`, `H_1_k` (also .ppm, .pgm, .jpg, .tif: HPatches), with `depth/k.png`, `labels/k.png` if any;
- - `img1.ppm`, `H1to2p` (original Oxford);
- - `01.png`, `02.png`, `corrs.txt` (WxBS, also .jpg): lines of x1 y1 x2 y2 instead of a homography.
-Sequences without any H file have a static camera. Folders with `frames` (walks) and those of views.hpp are left out.
+ - `img1.ppm`, `H1to2p` (original Oxford).
+Sequences without any H file have a static camera. Folders of views.hpp are left out.
 Pairs are ordered by path, numbers by value.
-@param marked whether to find pairs of the last layout only, or all others
 @throws cv::Exception for a root that is not a folder, or two pairs of one name. */
-std::vector<ImagePair> findPairs(const std::vector<std::string>& roots, bool marked = false);
+std::vector<ImagePair> findPairs(const std::vector<std::string>& roots);
 
 //! @throws cv::Exception that names the file, for a broken image or H file.
 LoadedPair loadPair(const ImagePair& pair);

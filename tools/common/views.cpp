@@ -77,27 +77,6 @@ std::vector<View> readViews(const std::string& folder)
     return views;
 }
 
-ViewFolder viewsOf(const Walk& walk)
-{
-    ViewFolder folder = {walk.light, walk.camera, {}};
-    for (int k = 1; k <= int(walk.poses.size()); k++)
-    {
-        const cv::Matx33d toWorld = walk.poses[k - 1].rotation().t();
-        if (fs::exists(walk.file("frames", k)))
-            folder.views.push_back({cv::format("%02d", k), walk.file("frames", k), toWorld,
-                    -(toWorld * walk.poses[k - 1].translation())});
-    }
-    return folder;
-}
-
-ViewPair pairOf(
-        const std::string& set, const ViewFolder& from, const View& a, const ViewFolder& to, const View& b)
-{
-    const cv::Matx33d toTarget = b.rotation.t();
-    return {set, to.name, a.name + "-" + b.name, a.file, b.file, from.camera, to.camera,
-            toTarget * a.rotation, toTarget * (a.position - b.position), &from == &to, 0, 0};
-}
-
 void addWithin(const std::string& set, const ViewFolder& folder, std::vector<ViewPair>& pairs)
 {
     for (size_t i = 0; i < folder.views.size(); i++)
@@ -106,11 +85,10 @@ void addWithin(const std::string& set, const ViewFolder& folder, std::vector<Vie
 }
 
 //! Pairs the images of the other folders with those of `map`; false if `map` or others are missing.
-bool addAcross(const std::string& set, const std::string& map, const std::vector<ViewFolder>& folders,
-        std::vector<ViewPair>& pairs)
+bool addAcross(const std::string& set, const std::vector<ViewFolder>& folders, std::vector<ViewPair>& pairs)
 {
     const auto mapped = std::find_if(
-            folders.begin(), folders.end(), [&](const ViewFolder& folder) { return folder.name == map; });
+            folders.begin(), folders.end(), [](const ViewFolder& folder) { return folder.name == "map"; });
     if (mapped == folders.end() || folders.size() == 1)
         return false;
     for (const ViewFolder& visit : folders)
@@ -133,45 +111,19 @@ bool addAcross(const std::string& set, const std::string& map, const std::vector
     return true;
 }
 
-Walk readWalk(const std::string& folder)
-{
-    const std::string name = baseName(folder), file = fs::join(folder, "camera.yml");
-    const cv::FileStorage storage(file, cv::FileStorage::READ);
-    const cv::Mat camera = storage["camera_matrix"].mat();
-    Walk walk = {folder, name.substr(0, name.find_last_of('_')), name.substr(name.find_last_of('_') + 1),
-            cv::Matx33d(), storage["depth_scale"].real(), {}};
-    bool whole = camera.size() == cv::Size(3, 3) && walk.depthScale > 0;
-    for (const cv::FileNode& node : storage["poses"])
-    {
-        const cv::Mat pose = node.mat();
-        whole = whole && pose.size() == cv::Size(4, 3);
-        if (whole)
-            walk.poses.push_back(cv::Affine3d(pose));
-    }
-    if (!whole || walk.poses.empty())
-        CV_Error(cv::Error::StsParseError, file + ": not camera_matrix, depth_scale and poses of a walk");
-    walk.camera = camera;
-    return walk;
-}
-
 }  // namespace
 
-std::string Walk::file(const char* kind, int frame) const
+ViewPair pairOf(
+        const std::string& set, const ViewFolder& from, const View& a, const ViewFolder& to, const View& b)
 {
-    return fs::join(folder, cv::format("%s/%d.png", kind, frame));
+    const cv::Matx33d toTarget = b.rotation.t();
+    return {set, to.name, a.name + "-" + b.name, a.file, b.file, from.camera, to.camera,
+            toTarget * a.rotation, toTarget * (a.position - b.position), &from == &to};
 }
 
-std::vector<Walk> findWalks(const std::vector<std::string>& roots)
+std::string depthFile(const std::string& imageFile)
 {
-    std::vector<Walk> walks;
-    visitFolders(roots, [&](const std::string& folder) {
-        const bool found =
-                fs::isDirectory(fs::join(folder, "frames")) && fs::exists(fs::join(folder, "camera.yml"));
-        if (found)
-            walks.push_back(readWalk(folder));
-        return !found;
-    });
-    return walks;
+    return fs::join(fs::getParent(fs::getParent(imageFile)), "depth/" + stem(imageFile) + ".png");
 }
 
 bool holdsViews(const std::string& folder)
@@ -195,16 +147,11 @@ std::map<std::string, std::vector<ViewFolder>> findViewFolders(const std::vector
 
 std::vector<ViewPair> findViewPairs(const std::vector<std::string>& roots)
 {
-    std::map<std::string, std::vector<ViewFolder>> scenes;
-    for (const Walk& walk : findWalks(roots))
-        scenes[fs::join(fs::getParent(walk.folder), "walk_" + walk.scene)].push_back(viewsOf(walk));
     std::vector<ViewPair> pairs;
     for (const auto& place : findViewFolders(roots))
-        if (!addAcross(baseName(place.first), "map", place.second, pairs))
+        if (!addAcross(baseName(place.first), place.second, pairs))
             for (const ViewFolder& folder : place.second)
                 addWithin(baseName(place.first), folder, pairs);
-    for (const auto& scene : scenes)
-        addAcross(baseName(scene.first), "noon", scene.second, pairs);
     return pairs;
 }
 

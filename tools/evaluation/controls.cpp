@@ -19,7 +19,6 @@ const float RATIOS[] = {.8f, .85f, .9f, .92f, .95f};
 const int POINTS[] = {500, 1000, 2000};  // an image, where neighbours are counted
 const double NOISE[] = {6, 14};          // grey levels, of the second image
 const double CLIP = 2;                   // of CLAHE, OpenCV's tutorials' choice
-const double DEPTH_STEP = .004;          // metres; tools/synthetic/common.inc
 const double DEPTH_TOLERANCE = .02;      // share of the depth
 const double SIFT_SIGMA = 1.6;           // of SIFT's first level, pixels
 const int SIFT_LAYERS = 3, BLOCK = 16;
@@ -101,14 +100,11 @@ std::vector<Detector> methods(Options options, int points, Which which)
     return all;
 }
 
-//! The depth image that views.py writes beside an image, metres along the optical axis; empty if there is none.
-cv::Mat depthOf(std::string file)
+//! Metres along the optical axis, where views.py wrote the depth of an image; empty otherwise.
+cv::Mat depthOf(const std::string& file)
 {
-    const size_t at = file.rfind("/images/");
-    if (at == std::string::npos)
-        return cv::Mat();
-    cv::Mat depth = cv::imread(file.replace(at, 8, "/depth/"), cv::IMREAD_UNCHANGED), metres;
-    depth.convertTo(metres, CV_32F, DEPTH_STEP);
+    cv::Mat metres;
+    cv::imread(depthFile(file), cv::IMREAD_UNCHANGED).convertTo(metres, CV_32F, DEPTH_STEP);
     return metres;
 }
 

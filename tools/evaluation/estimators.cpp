@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-#include <set>
-
 #include "common/dataset.hpp"
-#include "common/metrics.hpp"
-#include "common/pair_list.hpp"
 #include "common/views.hpp"
 #include "detectors.hpp"
 #include "experiments.hpp"
@@ -64,12 +60,6 @@ std::vector<LitPair> withRelit(const std::vector<ViewPair>& pairs)
     return all;
 }
 
-//! The name of a rotated or relit image in DescribedImages.
-std::string asTurned(const std::string& file, int turns, int light)
-{
-    return cv::format("%s turned %d lit %d", file.c_str(), turns, light);
-}
-
 //! Camera matrices, rotation, translation: 9, 9, 9 and 3 numbers; x and y of each match in both images.
 std::string numbers(const ViewPair& pair, const Points& points)
 {
@@ -94,24 +84,6 @@ std::vector<Detector> describedByTwo(Options options)
     std::vector<Detector> all = detectors(options);
     for (Detector& detector : all)
         detector.only = {detector.descriptor, UNIVERSAL};
-    return all;
-}
-
-//! Pairs of the lists, whose images are below the first root; without lists, the pairs below all roots.
-std::vector<ViewPair> viewPairs(const Options& options)
-{
-    if (options.pairs.empty())
-        return findViewPairs(options.roots);
-    std::vector<ViewPair> all;
-    std::set<std::string> names;
-    for (const std::string& list : options.pairs)
-    {
-        if (!names.insert(baseName(list)).second)
-            CV_Error(cv::Error::StsBadArg, "two lists of pairs are called " + baseName(list) +
-                                                   ", as their results would be: rename one");
-        for (const ViewPair& pair : readPairList(list, options.roots.front()))
-            all.push_back(pair);
-    }
     return all;
 }
 
@@ -144,7 +116,7 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
 
     DescribedImages described;
     const std::vector<Detector> all = describedByTwo(options);
-    const std::vector<LitPair> pairs = withRelit(viewPairs(options));
+    const std::vector<LitPair> pairs = withRelit(findViewPairs(options.roots));
     for (const LitPair& pair : pairs)
     {
         std::vector<Detector> missing;
@@ -152,17 +124,19 @@ int estimators(const Options& options, const std::vector<ImagePair>&)
             if (!experiment.table.has(with(pair.views.key(), d.name, UNIVERSAL, "propagated", LAST)))
                 missing.push_back(d);
         const auto run = [&, missing] {
-            ViewPair views = pair.views;
-            cv::Mat reference = readImage(views.referenceFile), target = readImage(views.targetFile);
+            const ViewPair& views = pair.views;
+            const cv::Mat reference = readImage(views.referenceFile);
+            cv::Mat target = readImage(views.targetFile);
+            std::string name = views.targetFile;
             if (pair.light >= 0)
+            {
                 target = relit(target, pair.light);
-            turnUpright(views, reference, target);
-            const std::string names[] = {asTurned(pair.views.referenceFile, pair.views.referenceTurns, -1),
-                    asTurned(pair.views.targetFile, pair.views.targetTurns, pair.light)};
+                name += cv::format(" relit %d", pair.light);
+            }
             for (const Detector& detector : missing)
             {
-                const DescribedImages::Result r = described.get(detector, reference, names[0]),
-                                              t = described.get(detector, target, names[1]);
+                const DescribedImages::Result r = described.get(detector, reference, views.referenceFile),
+                                              t = described.get(detector, target, name);
                 for (size_t i = 0; i < r->size(); i++)
                     judge(views, detector.name, reference, target, (*r)[i], (*t)[i]);
             }

@@ -24,7 +24,7 @@ struct Named
 const Named EXPERIMENTS[] = {{"fixed_points", fixedPoints}, {"detected_points", detectedPoints},
         {"estimators", estimators}, {"controls", controls}, {"alignment", alignment}, {"matching", matching},
         {"robustness", robustness}, {"comparison", comparison}, {"uncertainty", uncertainty},
-        {"views", warpedViews}, {"wxbs", wxbs}};
+        {"views", warpedViews}};
 
 //! Results of other settings must not be mixed with these.
 void checkSettings(const Options& options)
@@ -66,13 +66,8 @@ int evaluate(const Options& options)
         if (std::none_of(std::begin(EXPERIMENTS), std::end(EXPERIMENTS),
                     [&](const Named& e) { return name == e.name; }))
             CV_Error(cv::Error::StsBadArg, "unknown experiment " + name);
-    const bool listed = !options.pairs.empty();
-    std::vector<ImagePair> pairs;
-    for (bool marked : {false, true})
-        if (!listed)
-            for (const ImagePair& pair : findPairs(options.roots, marked))
-                pairs.push_back(pair);
-    if (!listed && pairs.empty() && findViewPairs(options.roots).empty())
+    const std::vector<ImagePair> pairs = findPairs(options.roots);
+    if (pairs.empty() && findViewPairs(options.roots).empty())
         CV_Error(cv::Error::StsObjectNotFound,
                 "no image sequences found; the README of tools/evaluation has the layouts");
     cv::utils::fs::createDirectories(options.out);
@@ -82,14 +77,11 @@ int evaluate(const Options& options)
     if (readable.empty() && !pairs.empty())
         CV_Error(cv::Error::StsObjectNotFound,
                 "none of the " + std::to_string(pairs.size()) + " image pairs can be read");
-    std::vector<ImagePair> withTransforms, marked;
-    for (const ImagePair& pair : readable)
-        (pair.kind == "marked" ? marked : withTransforms).push_back(pair);
     int skipped = int(pairs.size() - readable.size());
     for (const Named& e : EXPERIMENTS)
         if (options.experiments.empty() || std::find(options.experiments.begin(), options.experiments.end(),
                                                    e.name) != options.experiments.end())
-            skipped += e.run(options, e.run == wxbs ? marked : withTransforms);
+            skipped += e.run(options, readable);
     std::cerr << "evaluated " << readable.size() << " of " << pairs.size() << " image pairs, skipped "
               << skipped << " pieces of work" << std::endl;
     return skipped;

@@ -18,14 +18,13 @@ struct Options
     std::vector<std::string> saved;        //!< files of saved IIB extractors to compare
     std::vector<std::string> detectors;    //!< of OpenCV's; empty: all
     std::vector<std::string> keypoints;    //!< folders of other detectors' keypoints
-    std::vector<std::string> pairs;        //!< lists of pairs below the roots, for `estimators` alone
     std::vector<std::string> compare;      //!< pairs of images whose matches are listed
 };
 
 //! An experiment of README.md. Adds the missing rows of `<out>/<name>.csv`. @return the number of tasks that failed
 typedef int ExperimentFunction(const Options& options, const std::vector<ImagePair>& pairs);
 ExperimentFunction fixedPoints, detectedPoints, estimators, controls, alignment, matching, robustness,
-        comparison, uncertainty, warpedViews, wxbs;
+        comparison, uncertainty, warpedViews;
 
 /** Runs the experiments. @return how many tasks were skipped.
 @throws cv::Exception if there is nothing to evaluate, no image pair can be read, an experiment is unknown, or the folder

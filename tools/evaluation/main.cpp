@@ -14,9 +14,7 @@ const char ABOUT[] = "The paper's experiments, and more, on image sequences: iib
 const char KEYS[] =
         "{out         |<none>|folder of the results; a run that was interrupted goes on there}"
         "{only        |<none>|fixed_points, detected_points, estimators, controls, alignment, matching, "
-        "robustness, comparison, uncertainty, views or wxbs; may be repeated}"
-        "{pairs       |<none>|a list of pairs of images in DATA, with cameras and poses, for estimators; may "
-        "be repeated}"
+        "robustness, comparison, uncertainty or views; may be repeated}"
         "{compare     |<none>|image; given twice for each pair of which the matches of IIB and others are "
         "listed}"
         "{points      |1000  |keypoints an image}"
@@ -43,10 +41,6 @@ int run(const CommandLine& line)
     options.compare = line.all("compare");
     if (options.compare.size() % 2 != 0)
         CV_Error(cv::Error::StsBadArg, "--compare is given twice for each pair of images");
-    options.pairs = line.all("pairs");
-    if (!options.pairs.empty() &&
-            (options.experiments != std::vector<std::string>{"estimators"} || options.roots.size() != 1))
-        CV_Error(cv::Error::StsBadArg, "--pairs needs --only estimators and one folder of DATA");
     evaluate(options);
     return 0;
 }

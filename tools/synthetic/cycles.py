@@ -11,9 +11,9 @@ import mathutils
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from localization import SIZE, cameras, tum
+from localization import SIZE
 from render import DEPTH_SCALE, sensed, write, write_text
-from scenes import LIGHTS, SCENES, Scene, extrinsics, intrinsics, walk
+from scenes import LIGHTS, SCENES, Scene, cameras, extrinsics, intrinsics, tum, walk
 from views import BESIDE, MAP_VIEWS, VIEWS
 
 SAMPLES = 12  # rays a pixel; the remaining noise serves as a sensor's

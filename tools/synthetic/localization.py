@@ -6,11 +6,10 @@ import argparse
 import os
 import pathlib
 
-import cv2
 import numpy as np
 
 from render import IMAGE, Task, render_all, run_quickly, start, write_text
-from scenes import LIGHTS, SCENES, extrinsics, intrinsics, walk
+from scenes import LIGHTS, SCENES, camera_to_world, cameras, tum, walk
 
 SCENE = "street"
 MAP_LIGHT = "noon"
@@ -33,28 +32,6 @@ def visit(t):
                      1 + 6 * wave(11, 2.5) + 2 * wave(3.7), 6.5 + 1.5 * wave(3.1)], axis=1)
 
 
-def camera_to_world(pose):
-    """4x4 matrix of a pose (x, y, z, yaw, pitch)."""
-    world_to_camera = np.vstack([extrinsics(pose), [0, 0, 0, 1]])
-    return np.linalg.inv(world_to_camera)
-
-
-def quaternion(rotation):
-    """x, y, z, w of a 3x3 rotation by less than 180 degrees."""
-    axis = cv2.Rodrigues(rotation)[0].ravel()
-    angle = np.linalg.norm(axis)
-    return np.append(axis * np.sinc(angle / 2 / np.pi) / 2, np.cos(angle / 2))
-
-
-def tum(names, poses):
-    """Poses in TUM's format, camera to world."""
-    lines = ["# name tx ty tz qx qy qz qw"]
-    for name, pose in zip(names, poses):
-        matrix = camera_to_world(pose)
-        lines.append(" ".join([name, *(f"{v:.9g}" for v in (*matrix[:3, 3], *quaternion(matrix[:3, :3])))]))
-    return "\n".join(lines) + "\n"
-
-
 def imu(seed):
     """Rows of a EuRoC imu.csv: nanoseconds, angular velocity, specific force, in the camera's axes."""
     step = 1e-4
@@ -74,14 +51,6 @@ def imu(seed):
         force = force + ACCEL_BIAS + random.standard_normal(3) * ACCEL_NOISE * np.sqrt(IMU_RATE)
         rows.append(",".join([str(round(time * 1e9)), *(f"{v:.9g}" for v in (*turn, *force))]))
     return "#timestamp [ns],w_x [rad s^-1],w_y,w_z,a_x [m s^-2],a_y,a_z\n" + "\n".join(rows) + "\n"
-
-
-def cameras(scene, size):
-    """COLMAP's cameras.txt, with pixel centres at halves."""
-    matrix = intrinsics(scene, *size)
-    return ("# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n"
-            f"1 PINHOLE {size[0]} {size[1]} {matrix[0, 0]:.9g} {matrix[1, 1]:.9g} "
-            f"{matrix[0, 2] + 0.5:.9g} {matrix[1, 2] + 0.5:.9g}\n")
 
 
 def spread(count):

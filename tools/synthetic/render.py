@@ -15,14 +15,13 @@ from collections import namedtuple
 import cv2
 import numpy as np
 
-from scenes import LIGHTS, NOISE, NOISE_BY_DAY, SCENES, STILLS, extrinsics, intrinsics, walk
+from scenes import LIGHTS, NOISE, NOISE_BY_DAY, SCENES, STILLS, cameras, intrinsics, tum
 
 HERE = pathlib.Path(__file__).resolve().parent
 DEPTH_SCALE = 0.004  # metres a step, as in common.inc
 IMAGE, DEPTH, LABELS = range(3)
 # One ray a pixel and a blur are faster than antialiasing.
 ONE_RAY, BLUR = ["+FN8", "-A"], 0.6
-PATH_LIGHTS = ["noon", "dusk", "night", "winter"]  # of the walks
 ATTEMPTS = 3  # POV-Ray 3.7 sometimes crashes, and renders the same scene at the next attempt
 # One ray through the pixel's centre gives depth and label; pictures are antialiased without random numbers.
 OUTPUT = {IMAGE: ["+FN8", "+A0.15", "+AM1", "+R2", "-J"], DEPTH: ["+FN16", "-A"], LABELS: ["+FN8", "-A"]}
@@ -74,21 +73,6 @@ def write_text(path, text):
     path.write_text(text)
 
 
-def write_camera(path, scene, poses, size):
-    storage = cv2.FileStorage(path.name, cv2.FILE_STORAGE_WRITE | cv2.FILE_STORAGE_MEMORY)
-    storage.write("image_width", size[0])
-    storage.write("image_height", size[1])
-    storage.write("camera_matrix", intrinsics(scene, *size))
-    storage.writeComment("metres a step of depth/k.png, along the optical axis; 0: nothing there")
-    storage.write("depth_scale", DEPTH_SCALE)
-    storage.writeComment("[R|t] of each picture, world (x right, y down, z forward, metres) to camera")
-    storage.startWriteStruct("poses", cv2.FileNode_SEQ)
-    for pose in poses:
-        storage.write("", extrinsics(pose))
-    storage.endWriteStruct()
-    write_text(path, storage.releaseAndGetString())
-
-
 # A file to render, and its copies: all lights at a pose share depth and labels.
 Task = namedtuple("Task", "target scene mode light pose frame copies seed", defaults=[0])
 
@@ -112,42 +96,19 @@ def run_quickly(task, size):
     return run(task, size, quickly=True)
 
 
-def still(folder, scene, size):
-    """Tasks of one pose under every light: a sequence 1.png..N.png with identities H_1_k."""
-    pose, lights = SCENES[scene].still, SCENES[scene].lights
-    numbers = range(1, len(lights) + 1)
-    for k in numbers[1:]:
-        (folder / f"H_1_{k}").write_text("1 0 0\n0 1 0\n0 0 1\n")
-    write_camera(folder / "camera.yml", scene, [pose] * len(lights), size)
-    for mode, name in ((DEPTH, "depth"), (LABELS, "labels")):
-        yield Task(folder / name / "1.png", scene, mode, "noon", pose, 0, [folder / name / f"{k}.png" for k in numbers[1:]])
-    for k, light in zip(numbers, lights):
-        yield Task(folder / f"{k}.png", scene, IMAGE, light, pose, 0, [])
-
-
-def walked(folders, scene, size, frames):
-    """Tasks of one walk under each light of folders ({light: folder}). Pictures are in frames/, without H_1_k."""
-    poses = walk(SCENES[scene].path, frames)
-    first, *others = folders.values()
-    for light, folder in folders.items():
-        write_camera(folder / "camera.yml", scene, poses, size)
-    for k, pose in enumerate(poses, 1):
-        for mode, name in ((DEPTH, "depth"), (LABELS, "labels")):
-            yield Task(first / name / f"{k}.png", scene, mode, "noon", pose, k, [folder / name / f"{k}.png" for folder in others])
-        for light, folder in folders.items():
-            yield Task(folder / "frames" / f"{k}.png", scene, IMAGE, light, pose, k, [])
-
-
-def plan(out, scenes, frames, size):
+def plan(out, scenes, size):
+    """Tasks of one pose of each scene under every light: a sequence 1.png..N.png with identities H_1_k."""
     for scene in scenes:
-        folder = out / "lights" / scene
-        folder.mkdir(parents=True, exist_ok=True)
-        yield from still(folder, scene, size)
-    for scene in scenes if frames else []:
-        folders = {light: out / "path" / f"{scene}_{light}" for light in PATH_LIGHTS}
-        for folder in folders.values():
-            folder.mkdir(parents=True, exist_ok=True)
-        yield from walked(folders, scene, size, frames)
+        folder, pose, lights = out / "lights" / scene, SCENES[scene].still, SCENES[scene].lights
+        numbers = range(1, len(lights) + 1)
+        write_text(folder / "cameras.txt", cameras(scene, size))
+        write_text(folder / "poses.txt", tum(map(str, numbers), [pose] * len(lights)))
+        for k in numbers[1:]:
+            write_text(folder / f"H_1_{k}", "1 0 0\n0 1 0\n0 0 1\n")
+        for mode, name in ((DEPTH, "depth"), (LABELS, "labels")):
+            yield Task(folder / name / "1.png", scene, mode, "noon", pose, 0, [folder / name / f"{k}.png" for k in numbers[1:]])
+        for k, light in zip(numbers, lights):
+            yield Task(folder / f"{k}.png", scene, IMAGE, light, pose, 0, [])
 
 
 def start(main):
@@ -175,15 +136,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=pathlib.Path, help="output folder; existing pictures are kept")
     parser.add_argument("--scenes", nargs="+", choices=STILLS, default=STILLS, metavar="SCENE", help=f"some of: {', '.join(STILLS)} (all)")
-    parser.add_argument("--frames", type=int, default=0, help="also render walks of this many frames (0: none)")
     parser.add_argument("--size", type=int, nargs=2, default=(640, 480), metavar=("WIDTH", "HEIGHT"))
     parser.add_argument("--quick", action="store_true", help="one ray a pixel and a blur instead of antialiasing")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
     options = parser.parse_args()
-    if options.frames < 0 or min(options.size) < 16 or options.jobs < 1:
-        parser.error("--frames must be 0 or more, --size 16 or more each way, --jobs 1 or more")
+    if min(options.size) < 16 or options.jobs < 1:
+        parser.error("--size must be 16 or more each way, --jobs 1 or more")
     size = tuple(options.size)
-    tasks = list(plan(options.out, options.scenes, options.frames, size))
+    tasks = list(plan(options.out, options.scenes, size))
     render_all(tasks, size, options.jobs, run_quickly if options.quick else run)
 
 

@@ -2,6 +2,7 @@
 
 from collections import namedtuple
 
+import cv2
 import numpy as np
 
 # Numbers as in lights.inc. The reference (picture 1) is noon.
@@ -63,3 +64,33 @@ def extrinsics(pose):
     rotation = np.stack([right, down, forward]) * [1, -1, 1]
     centre = np.asarray(pose[:3]) * [1, -1, 1]
     return np.hstack([rotation, (-rotation @ centre)[:, None]])
+
+
+def camera_to_world(pose):
+    """4x4 matrix of a pose (x, y, z, yaw, pitch)."""
+    world_to_camera = np.vstack([extrinsics(pose), [0, 0, 0, 1]])
+    return np.linalg.inv(world_to_camera)
+
+
+def quaternion(rotation):
+    """x, y, z, w of a 3x3 rotation by less than 180 degrees."""
+    axis = cv2.Rodrigues(rotation)[0].ravel()
+    angle = np.linalg.norm(axis)
+    return np.append(axis * np.sinc(angle / 2 / np.pi) / 2, np.cos(angle / 2))
+
+
+def tum(names, poses):
+    """Poses in TUM's format, camera to world."""
+    lines = ["# name tx ty tz qx qy qz qw"]
+    for name, pose in zip(names, poses):
+        matrix = camera_to_world(pose)
+        lines.append(" ".join([name, *(f"{v:.9g}" for v in (*matrix[:3, 3], *quaternion(matrix[:3, :3])))]))
+    return "\n".join(lines) + "\n"
+
+
+def cameras(scene, size):
+    """COLMAP's cameras.txt, with pixel centres at halves."""
+    matrix = intrinsics(scene, *size)
+    return ("# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n"
+            f"1 PINHOLE {size[0]} {size[1]} {matrix[0, 0]:.9g} {matrix[1, 1]:.9g} "
+            f"{matrix[0, 2] + 0.5:.9g} {matrix[1, 2] + 0.5:.9g}\n")

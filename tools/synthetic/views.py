@@ -7,9 +7,9 @@ import pathlib
 
 import numpy as np
 
-from localization import MAP_LIGHT, SIZE, cameras, tum
+from localization import MAP_LIGHT, SIZE
 from render import DEPTH, IMAGE, Task, render_all, run_quickly, start, write_text
-from scenes import SCENES, STILLS, extrinsics, walk
+from scenes import SCENES, STILLS, cameras, extrinsics, tum, walk
 
 LIGHTS = ["night", "dusk", "winter"]
 MAP_VIEWS, VIEWS = 5, 3  # pictures at noon along the walk, and of each other light beside it
@@ -31,13 +31,14 @@ def nearer(poses, metres, roll):
     return np.column_stack([poses[:, :3] + metres * forward, poses[:, 3:], np.full(len(poses), roll)])
 
 
-def plan(out, scenes, seeds, size, lights=tuple(LIGHTS), moved=(), depth=False):
+def plan(out, scenes, seeds, size, lights=tuple(LIGHTS), moved=(), depth=False, steps=None):
     for seed in seeds:
         for scene in scenes:
-            views = {"map": (MAP_LIGHT, walk(SCENES[scene].path, MAP_VIEWS))}
-            views.update((light, (light, beside(scene, light, seed))) for light in lights)
+            mapped = walk(SCENES[scene].path, steps or MAP_VIEWS)
+            views = {"map": (MAP_LIGHT, mapped)}
+            views.update((light, (light, mapped if steps else beside(scene, light, seed))) for light in lights)
             if moved:
-                views["nearer"] = MAP_LIGHT, np.concatenate([nearer(views["map"][1], *each) for each in [(0, 0), *moved]])
+                views["nearer"] = MAP_LIGHT, np.concatenate([nearer(mapped, *each) for each in [(0, 0), *moved]])
             for name, (light, poses) in views.items():
                 folder = out / f"{scene}_{seed}" / name
                 names = [f"{k:04d}" for k in range(len(poses))]
@@ -59,12 +60,13 @@ def main():
                         help=f"other than noon: some of {', '.join(LIGHTS)} (all)")
     parser.add_argument("--nearer", nargs=2, type=float, action="append", default=[], metavar=("METRES", "ROLL"),
                         help="adds a folder nearer: the views of map, and the same moved forward and rolled clockwise; may be repeated")
+    parser.add_argument("--walk", type=int, metavar="STEPS", help="so many equal steps of the walk under every light, for tools/training")
     parser.add_argument("--depth", action="store_true", help="also renders the depth of each view, in depth/")
     parser.add_argument("--size", type=int, nargs=2, default=SIZE, metavar=("WIDTH", "HEIGHT"))
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="renderings at a time")
     options = parser.parse_args()
     size = tuple(options.size)
-    render_all(list(plan(options.out, options.scenes, options.seed, size, options.lights, options.nearer, options.depth)), size, options.jobs, run_quickly)
+    render_all(list(plan(options.out, options.scenes, options.seed, size, options.lights, options.nearer, options.depth, options.walk)), size, options.jobs, run_quickly)
 
 
 if __name__ == "__main__":

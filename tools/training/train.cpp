@@ -31,7 +31,7 @@ Progress show(const std::string& what)
 void writePresets(const std::string& file, const TrainingSet& images, uint64 seed)
 {
     if (images.walks.empty())
-        CV_Error(cv::Error::StsBadArg, "no walks in the folders; scripts/helpers/synthetic.sh renders them");
+        CV_Error(cv::Error::StsBadArg, "no walks in the folders; tools/synthetic/views.py renders them");
     std::vector<NamedExtractor> presets;
     for (const Recipe& recipe : presetRecipes())
         presets.push_back({recipe.name, train(recipe, images, seed, show(recipe.name))});

@@ -6,7 +6,6 @@
 #include <cstdlib>
 
 #include "common/dataset.hpp"
-#include "common/views.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/imgcodecs.hpp"
 
@@ -17,39 +16,24 @@ namespace fs = cv::utils::fs;
 
 const double DEPTH_TOLERANCE = 0.02;  // relative difference of depth of a point that both pictures see
 
-//! Whether a frame is one of the first two of four: this gives steps of one and three to five, and few repeated views.
-bool isUsed(const Walk& walk, int frame)
-{
-    return (frame - 1) % 4 < 2 && fs::exists(walk.file("frames", frame)) &&
-           fs::exists(walk.file("depth", frame));
-}
-
-void addPairs(const Walk& from, const Walk& to, int farthest, std::vector<WalkPair>& pairs)
-{
-    const int frames = int(std::min(from.poses.size(), to.poses.size()));
-    for (int a = 1; a <= frames; a++)
-        for (int b = std::max(1, a - farthest); b <= std::min(frames, a + farthest); b++)
-            if (a != b && isUsed(from, a) && isUsed(to, b))
-            {
-                const cv::Affine3d &first = from.poses[a - 1], &second = to.poses[b - 1];
-                const cv::Matx33d rotation = second.rotation() * first.rotation().t();
-                const cv::Vec3d metres = second.translation() - rotation * first.translation();
-                pairs.push_back({baseName(fs::getParent(from.folder)) + "/" + from.scene,
-                        from.file("frames", a), to.file("frames", b), from.file("depth", a),
-                        to.file("depth", b), from.camera, rotation, metres / from.depthScale});
-            }
-}
+//! Whether a picture is one of the first two of four: this gives steps of one and three to five, and few repeated views.
+bool isUsed(const ViewFolder& walk, int k) { return k % 4 < 2 && fs::exists(depthFile(walk.views[k].file)); }
 
 }  // namespace
 
-std::vector<WalkPair> findWalkPairs(const std::vector<std::string>& roots, int farthest)
+std::vector<ViewPair> findWalkPairs(const std::vector<std::string>& roots, int farthest)
 {
-    const std::vector<Walk> walks = findWalks(roots);
-    std::vector<WalkPair> pairs;
-    for (const Walk& from : walks)
-        for (const Walk& to : walks)
-            if (from.scene == to.scene && fs::getParent(from.folder) == fs::getParent(to.folder))
-                addPairs(from, to, farthest, pairs);
+    std::vector<ViewPair> pairs;
+    for (const auto& place : findViewFolders(roots))
+        for (const ViewFolder& from : place.second)
+            for (const ViewFolder& to : place.second)
+                for (int a = 0; a < int(from.views.size()); a++)
+                    for (int b = std::max(0, a - farthest);
+                            b <= std::min(int(to.views.size()) - 1, a + farthest); b++)
+                        if (a != b && isUsed(from, a) && isUsed(to, b))
+                            pairs.push_back(
+                                    pairOf(baseName(fs::getParent(place.first)) + "/" + baseName(place.first),
+                                            from, from.views[a], to, to.views[b]));
     return pairs;
 }
 
@@ -83,17 +67,17 @@ void Relief::mirror()
     translation = flip * translation;
 }
 
-Relief loadRelief(const WalkPair& pair)
+Relief loadRelief(const ViewPair& pair)
 {
     cv::Mat depths[2];
-    const std::string files[2] = {pair.referenceDepth, pair.targetDepth};
+    const std::string files[2] = {depthFile(pair.referenceFile), depthFile(pair.targetFile)};
     for (int i = 0; i < 2; i++)
     {
         depths[i] = readImage(files[i], cv::IMREAD_UNCHANGED);
         if (depths[i].type() != CV_16U || depths[i].size() != depths[0].size())
             CV_Error(cv::Error::StsBadArg, files[i] + ": not a 16-bit depth map of the picture's size");
     }
-    return {depths[0], depths[1], pair.camera, pair.rotation, pair.translation};
+    return {depths[0], depths[1], pair.referenceCamera, pair.rotation, pair.translation / DEPTH_STEP};
 }
 
 }  // namespace iib_tools

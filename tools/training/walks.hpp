@@ -4,32 +4,21 @@
 #include <string>
 #include <vector>
 
-#include "opencv2/core.hpp"
+#include "common/views.hpp"
 #include "opencv2/core/types.hpp"
 
 namespace iib_tools {
 
-//! Two pictures of a rendered walk (tools/synthetic), from two poses and under any two lights.
-struct WalkPair
-{
-    std::string scene;                        //!< "set/scene", without the light
-    std::string referenceFile, targetFile;    //!< 640 x 480 or as rendered
-    std::string referenceDepth, targetDepth;  //!< 16U, of the same size
-    cv::Matx33d camera;                       //!< pixels
-    cv::Matx33d rotation;                     //!< from the reference's axes to the target's
-    cv::Vec3d translation;                    //!< likewise, in steps of depth
-};
-
-//! Ordered pairs of pictures of the walks of common/views.hpp, at most `farthest` apart among frames 1, 2, 5, 6, 9, 10,
-//! ...
-std::vector<WalkPair> findWalkPairs(const std::vector<std::string>& roots, int farthest);
+/** Finds ordered pairs of pictures with depth images, from two poses of a rendered walk and under any two lights: folders of one
+place (tools/synthetic/views.py --walk). Pictures are at most `farthest` apart among numbers 0, 1, 4, 5, 8, 9, ... */
+std::vector<ViewPair> findWalkPairs(const std::vector<std::string>& roots, int farthest);
 
 //! The depth maps and relative pose of two pictures of a walk, which map points from one to the other.
 struct Relief
 {
     cv::Mat_<ushort> reference, target;  //!< depth along the optical axis; 0: no surface
     cv::Matx33d camera, rotation;
-    cv::Vec3d translation;
+    cv::Vec3d translation;  //!< in steps of depth
 
     //! A keypoint of the reference projected to the target and scaled; size 0 if occluded, outside or of unknown depth.
     cv::KeyPoint project(const cv::KeyPoint& keypoint) const;
@@ -38,6 +27,6 @@ struct Relief
 };
 
 //! @throws cv::Exception for a file that is not a depth map.
-Relief loadRelief(const WalkPair& pair);
+Relief loadRelief(const ViewPair& pair);
 
 }  // namespace iib_tools

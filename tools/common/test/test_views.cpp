@@ -66,30 +66,6 @@ TEST_F(ViewsTest, visits_are_paired_with_the_map)
     EXPECT_EQ(1u, findViewPairs({folder.path("alone")}).size());
 }
 
-TEST_F(ViewsTest, walks_are_paired_with_noon)
-{
-    for (const std::string walk : {"path/hut_noon", "path/hut_night"})
-    {
-        folder.makeFolder(walk + "/frames");
-        for (int k = 1; k <= 2; k++)
-            ASSERT_TRUE(
-                    cv::imwrite(folder.path(walk + cv::format("/frames/%d.png", k)), cv::Mat(9, 9, CV_8U)));
-        cv::FileStorage camera(folder.path(walk + "/camera.yml"), cv::FileStorage::WRITE);
-        camera << "camera_matrix" << cv::Mat(cv::Mat_<double>::eye(3, 3) * 7) << "depth_scale" << 0.001
-               << "poses"
-               << "[" << cv::Mat(cv::Mat_<double>::eye(3, 4))
-               << cv::Mat(cv::Matx34d(0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 4)) << "]";
-    }
-    const std::vector<ViewPair> pairs = findViewPairs({folder.path("")});
-    ASSERT_EQ(2u, pairs.size());
-    EXPECT_EQ("walk_hut night 02-01", pairs[0].set + " " + pairs[0].sequence + " " + pairs[0].target);
-    EXPECT_EQ(7, pairs[0].referenceCamera(0, 0));
-    // The second frame's camera stands at x = 4 and looks along -x.
-    EXPECT_EQ(cv::Vec3d(4, 0, 0), pairs[0].translation);
-    EXPECT_EQ(cv::Vec3d(0, 0, 4), pairs[1].translation);
-    EXPECT_EQ(pairs[0].rotation.t(), pairs[1].rotation);
-}
-
 TEST_F(ViewsTest, broken_files_are_reported)
 {
     addFolder("s/walk", "a 0 0 0 0 0 0 1\n", {"a"});

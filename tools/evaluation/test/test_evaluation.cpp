@@ -244,49 +244,6 @@ TEST_F(EvaluationTest, keypoints_of_files_are_described)
     EXPECT_NE(std::string::npos, without.find("network,IIB,light,170,"));
 }
 
-//! Blocks before a wall. The camera steps to the side, so epipolar lines are rows.
-TEST_F(EvaluationTest, correspondences_by_hand_are_judged_by_epipolar_lines)
-{
-    folder.makeFolder("marked/WGBS/blocks");
-    cv::RNG rng(3);
-    cv::Mat images[2];
-    for (cv::Mat& image : images)
-        image = cv::Mat(240, 320, CV_8U, cv::Scalar(90));
-    for (int i = 0; i < 900; i++)
-    {
-        const cv::Rect block(
-                rng.uniform(0, 320), rng.uniform(0, 240), rng.uniform(4, 26), rng.uniform(4, 26));
-        const cv::Scalar grey(rng.uniform(20, 230));
-        cv::rectangle(images[0], block, grey, -1);
-        cv::rectangle(images[1], block + cv::Point(i < 600 ? -4 : -14, 0), grey, -1);
-    }
-    for (int k = 0; k < 2; k++)
-        cv::imwrite(folder.path(cv::format("marked/WGBS/blocks/0%d.png", k + 1)), images[k]);
-    folder.write(
-            "marked/WGBS/blocks/corrs.txt", "100 60 90 60\n2e2 150 196 150\n100 60 90 160\n200 150 190 90\n");
-    options.roots = {folder.path("marked")};
-    options.experiments = {"wxbs"};
-    EXPECT_EQ(0, evaluate(options));
-    const std::vector<Fields> rows = readRows(options.out + "/wxbs.csv",
-            {"set", "sequence", "method", "points", "found", "matches", "within_10", "share"});
-    ASSERT_EQ(4u, rows.size());
-    for (const Fields& row : rows)  // half are right to a pixel or two, of thresholds up to 19
-    {
-        EXPECT_EQ("0.5", row[6]) << row[2];
-        EXPECT_GE(std::atof(row[7].c_str()), .42) << row[2];
-        EXPECT_LT(std::atof(row[7].c_str()), .5) << row[2];
-    }
-    options.experiments = {"fixed_points"};  // which must ignore these images
-    options.out = folder.path("others");
-    EXPECT_EQ(0, evaluate(options));
-    EXPECT_TRUE(fixedPointsRows().empty());
-
-    folder.write("marked/WGBS/blocks/corrs.txt", "100 60 90\n");
-    options.experiments = {"wxbs"};
-    EXPECT_EQ(4, evaluate(options));
-    EXPECT_TRUE(findPairs(options.roots).empty());  // other experiments ask for these pairs
-}
-
 TEST_F(EvaluationTest, images_of_different_sets_are_matched)
 {
     cv::RNG rng(5);

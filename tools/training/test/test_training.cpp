@@ -247,36 +247,31 @@ TEST(Training_Relief, mirrored_pictures_show_mirrored_points)
 TEST(Training_Walks, pairs_of_places_under_all_lights)
 {
     const TestFolder folder;
-    for (const char* light : {"path/hut_noon", "path/hut_night"})
+    for (const std::string light : {"path/hut_0/map", "path/hut_0/night"})
     {
-        folder.makeFolder(light + std::string("/frames"));
-        folder.makeFolder(light + std::string("/depth"));
-        cv::FileStorage camera(folder.path(light) + "/camera.yml", cv::FileStorage::WRITE);
-        camera << "camera_matrix" << cv::Mat(cv::Matx33d(100, 0, 59.5, 0, 100, 39.5, 0, 0, 1))
-               << "depth_scale" << 0.001 << "poses"
-               << "[";
-        for (int frame = 1; frame <= 6; frame++)
+        folder.makeFolder(light + "/images");
+        folder.makeFolder(light + "/depth");
+        folder.write(light + "/cameras.txt", "1 PINHOLE 120 80 100 100 60 40\n");
+        std::string poses;
+        for (int k = 0; k < 6; k++)
         {
-            camera << cv::Mat(cv::Matx34d(1, 0, 0, -0.1 * frame, 0, 1, 0, 0, 0, 0, 1, 0));
-            const std::string number = "/" + std::to_string(frame) + ".png";
-            cv::imwrite(folder.path(light) + "/frames" + number, cv::Mat(80, 120, CV_8U, cv::Scalar(99)));
-            cv::imwrite(folder.path(light) + "/depth" + number, cv::Mat(80, 120, CV_16U, cv::Scalar(2000)));
+            poses += cv::format("%d %g 0 0 0 0 0 1\n", k, .1 * k);
+            const std::string name = "/" + std::to_string(k) + ".png";
+            cv::imwrite(folder.path(light) + "/images" + name, cv::Mat(80, 120, CV_8U, cv::Scalar(99)));
+            cv::imwrite(folder.path(light) + "/depth" + name, cv::Mat(80, 120, CV_16U, cv::Scalar(500)));
         }
-        camera << "]";
+        folder.write(light + "/poses.txt", poses);
     }
-    // frames 1, 2, 5 and 6 without the pair 1 and 6, which is too far apart; both directions, four pairs of lights
-    const std::vector<WalkPair> pairs = findWalkPairs({folder.path("")}, 4);
+    // 0, 1, 4 and 5 without the pair 0 and 5, which is too far apart; both directions, four pairs of lights
+    const std::vector<ViewPair> pairs = findWalkPairs({folder.path("")}, 4);
     ASSERT_EQ(5u * 2 * 4, pairs.size());
-    for (const WalkPair& pair : pairs)
+    for (const ViewPair& pair : pairs)
     {
-        EXPECT_EQ("path/hut", pair.scene);
-        EXPECT_GE(cv::norm(pair.translation), 99.9) << "millimetres";
-        EXPECT_LE(cv::norm(pair.translation), 400.1);
+        EXPECT_EQ("path/hut_0", pair.set);
+        EXPECT_GE(cv::norm(loadRelief(pair).translation), 24.9) << "steps of 4 mm";
+        EXPECT_LE(cv::norm(loadRelief(pair).translation), 100.1);
     }
     EXPECT_GT(loadRelief(pairs[0]).project(cv::KeyPoint(60.f, 40.f, 8.f)).size, 0);
-
-    folder.write("path/hut_noon/camera.yml", "%YAML:1.0\n---\ndepth_scale: 0.001\n");
-    EXPECT_THROW(findWalkPairs({folder.path("")}, 4), cv::Exception);
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 //   amos_daynight/cam04
 //   amos_daynight/cam05
 //   amos_daynight/cam06
-//   path/room, where points are detected
-//   path/terrain, where points are detected
+//   path/room_0, where points are detected
+//   path/terrain_0, where points are detected
 //   tilde_webcam/chamonix
 //   tilde_webcam/courbevoie
 //   tilde_webcam/panorama
