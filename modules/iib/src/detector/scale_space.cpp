@@ -55,7 +55,8 @@ ScaleSpace::ScaleSpace(const Mat& normalized_, const Octave& octave_, int first_
 {
     const std::vector<SmoothingStep>& steps = octave.steps;
     const int width = octave.size.width;
-    std::vector<int> oldest(ahead.size(), 0);  // oldest row that is needed, relative to advance()'s row
+    // From the last image back: which rows the images made of it need, relative to advance()'s row.
+    std::vector<int> oldest(ahead.size(), 0);
     for (size_t i = steps.size(); i-- > 0;)
     {
         const SmoothingStep& s = steps[i];

@@ -12,6 +12,9 @@ namespace oracle {
 
 typedef cv::Mat_<int> Map;
 
+//! Means of 4 x 4 pixels around the corner between four of them, weighted 1, 3, 3, 1 in both directions, rounded.
+Map halved(const Map& m);
+
 //! Naive local normalization of CV_8U or CV_16U, with the library's integers.
 cv::Mat normalizeLocally(const cv::Mat& grey, double sigma);
 

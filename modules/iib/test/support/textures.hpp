@@ -34,6 +34,22 @@ int differingBits(const Mat& a, const Mat& b);
 
 void expectSameKeyPoints(const std::vector<KeyPoint>& expected, const std::vector<KeyPoint>& actual);
 
+//! Expects that make() gives the same with every number of threads, and each time, by expectSame(expected, actual).
+template <typename Make, typename Expect>
+void forEveryNumberOfThreads(const Make& make, const Expect& expectSame)
+{
+    const int before = getNumThreads();
+    setNumThreads(1);
+    const auto expected = make();
+    for (int threads : {1, 2, 3, 8})
+    {
+        SCOPED_TRACE(format("%d threads", threads));
+        setNumThreads(threads);
+        expectSame(expected, make());
+    }
+    setNumThreads(before);
+}
+
 //! FNV-1a of the bytes of all rows.
 uint64 hashOf(const Mat& m);
 
