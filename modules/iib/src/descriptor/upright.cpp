@@ -48,13 +48,6 @@ void describeBatch(const BatchJob& job, const ChannelGroup& group, const std::ve
     }
 }
 
-//! A way to make sums over cells; it applies if pixels and sums fit its types.
-struct Summation
-{
-    bool applies;
-    void (*describe)(const BatchJob&, const ChannelGroup&, const std::vector<Channel>&, const ChannelBounds&);
-};
-
 }  // namespace
 
 void describeUpright(const BatchJob& job)
@@ -72,18 +65,15 @@ void describeUpright(const BatchJob& job)
         const double largestSum = bounds.value * pixels;
         const bool fits16Bits = largestSum <= USHRT_MAX, fits32Bits = largestSum <= UINT_MAX;
         const bool ofBytes = !is16Bit(channels);
-        // the fastest first; the last one always applies
-        const Summation ways[] = {
-                {ofBytes && fits16Bits && columnsAreFaster(job, channels, bounds.gradient > 0, side),
-                        describeBatch<ColumnBand, ushort>},
-                {ofBytes && fits16Bits, describeBatch<IntegralBand<short, ushort>, ushort>},
-                {ofBytes && fits32Bits, describeBatch<IntegralBand<short, unsigned>, unsigned>},
-                {fits32Bits, describeBatch<IntegralBand<int, unsigned>, unsigned>},
-                {true, describeBatch<IntegralBand<int, unsigned>, double>}};
-        const Summation* way = ways;
-        while (!way->applies)
-            way++;
-        way->describe(job, group, channels, bounds);
+        // the fastest whose pixels and sums fit its types
+        const auto describe =
+                ofBytes && fits16Bits && columnsAreFaster(job, channels, bounds.gradient > 0, side)
+                        ? describeBatch<ColumnBand, ushort>
+                : ofBytes && fits16Bits ? describeBatch<IntegralBand<short, ushort>, ushort>
+                : ofBytes && fits32Bits ? describeBatch<IntegralBand<short, unsigned>, unsigned>
+                : fits32Bits            ? describeBatch<IntegralBand<int, unsigned>, unsigned>
+                                        : describeBatch<IntegralBand<int, unsigned>, double>;
+        describe(job, group, channels, bounds);
     }
 }
 

@@ -23,8 +23,8 @@ std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas, dou
             // Five taps: twice (w, 1 - 2 w, w), each of which adds 2 w spacing^2. w <= 1/3 gives a single peak.
             const int spacing = cvCeil(std::sqrt(.75 * added));
             const double w = added / (4 * spacing * spacing);
-            steps.push_back({spacing,
-                    {(short)cvRound(2 * w * (1 - 2 * w) * 65536), (short)cvRound(w * w * 65536)}, 0, 0});
+            steps.push_back({spacing, (short)cvRound(2 * w * (1 - 2 * w) * 65536),
+                    (short)cvRound(w * w * 65536), 0, 0});
             variance += added;
         }
         const int distance = std::max(cvRound(.75 * sigma), 1);
