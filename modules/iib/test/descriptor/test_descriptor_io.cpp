@@ -139,10 +139,7 @@ TEST(IIB_DetectorFile, a_loaded_extractor_has_the_detector)
         EXPECT_EQ(detector->getDefaultName(), loaded->getDetector()->getDefaultName());
         EXPECT_EQ(text, parametersOf(loaded->getDetector()));
 
-        std::vector<KeyPoint> expected, actual;
-        detector->detect(image, expected);
-        loaded->detect(image, actual);
-        expectSameKeyPoints(expected, actual);
+        expectSameKeyPoints(found(*detector, image), found(*loaded, image));
     }
 }
 

@@ -8,8 +8,6 @@
 
 namespace opencv_test { namespace {
 
-using oracle::found;
-
 TEST(IIB_HessianDetector, as_the_oracle_for_every_size_and_alignment)
 {
     const Mat whole = texture(Size(260, 70), CV_8U, 1);

@@ -9,8 +9,6 @@
 
 namespace opencv_test { namespace {
 
-using oracle::found;
-
 TEST(IIB_HessianDetector, takes_every_type_of_image)
 {
     const Mat grey = texture(Size(200, 160), CV_8U, 6);

@@ -29,6 +29,14 @@ Mat texture(Size size, int depth, int seed);
 //! Keypoints in and around an image, of all sizes and directions, some of them -1. Quarters of pixels, whole degrees.
 std::vector<KeyPoint> scatter(Size size, int count, float smallest, float largest, int seed);
 
+//! The detector's keypoints.
+inline std::vector<KeyPoint> found(Feature2D& detector, InputArray image, InputArray mask = noArray())
+{
+    std::vector<KeyPoint> keypoints;
+    detector.detect(image, keypoints, mask);
+    return keypoints;
+}
+
 //! Number of bits that differ; fails if the sizes or types do.
 int differingBits(const Mat& a, const Mat& b);
 
