@@ -60,6 +60,7 @@ public:
     void unchecked(const void* data, size_t size);
     //! Bytes so far.
     uint64 size() const { return written; }
+    void finish() { file->finish(); }
     void commit() { file->commit(); }
 
 private:
