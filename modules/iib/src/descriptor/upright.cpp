@@ -44,7 +44,7 @@ void describeBatch(const BatchJob& job, const ChannelGroup& group, const std::ve
         band.advance(batch.bandEnd(std::max(edges.y[n], batch.area.y)));
         band.cells(edges, n, cells);
         const LevelWriter writer = {job, group, edges, 4. * bounds.value, job.descriptors.ptr(k)};
-        writer.writeFitting(plan.finest, cells, longestCell(region.side, n));
+        writer.writeFitting(plan.finest, cells, std::ceil(region.side / n));
     }
 }
 
@@ -55,7 +55,7 @@ void describeUpright(const BatchJob& job)
     double side = 0;
     for (int k : job.batch.keypoints)
         side = std::max(side, job.regions[k].side);
-    const double cell = longestCell(side, job.plan.cellsInRow());
+    const double cell = std::ceil(side / job.plan.cellsInRow());  // no cell is longer
     const double pixels = std::min(cell * cell, (double)job.batch.area.width * job.batch.area.height);
     for (const ChannelGroup& group : job.plan.groups)
     {
