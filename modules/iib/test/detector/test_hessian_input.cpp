@@ -5,7 +5,6 @@
 #include "../support/temporary_file.hpp"
 #include "../support/test_errors.hpp"
 #include "../support/textures.hpp"
-#include "hessian_oracle.hpp"
 
 namespace opencv_test { namespace {
 

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "oracle_pixels.hpp"
+#include "../normalization/normalization_oracle.hpp"
 #include "opencv2/iib/descriptor.hpp"
 
 /*
