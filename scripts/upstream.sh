@@ -76,8 +76,8 @@ branch_of() {
     */aligned_buffer.hpp | */test_matcher_chunks.cpp) echo hamming ;;
     */iib/hessian_detector.hpp | src/detector/hessian* | */blobs.* | */scale_space.*) echo detector ;;
     src/normalization/* | src/common/image_input.* | src/common/grey.*) echo detector ;;
-    */hessian_oracle.* | */test_hessian_detector.cpp | */oracle_pixels.hpp | */normalization_oracle.* | */test_images.*) echo detector ;;
-    *normalized_detector.* | */detector_file.* | */test_local_normalization.cpp | */seen_image.hpp) echo normalized ;;
+    */hessian_oracle.* | */test_hessian_detector.cpp | */normalization_oracle.* | */test_images.*) echo detector ;;
+    *normalized_detector.* | */detector_file.* | */test_local_normalization.cpp) echo normalized ;;
     */iib/refinement.hpp | */prepared_image.hpp | src/refinement/* | src/common/geometry.hpp | doc/iib.bib) echo refinement ;;
     */refinement_scene.* | */test_refinement_bits.cpp | */test_propagation.cpp) echo refinement ;;
     */rotation[/.]* | include/opencv2/iib.hpp | */test_match_rotated.cpp | */test_rotated.cpp | */test_orientation.cpp) echo rotation ;;

@@ -4,6 +4,8 @@
 #include "code_segment.hpp"
 #include "opencv2/iib/detail/checked_file.hpp"
 
+#include <cstring>
+
 namespace cv { namespace iib {
 
 static const FileKind KIND = {"IIBCODES", 2, "a segment of MappedIndex"};
@@ -16,27 +18,27 @@ static uint64 aligned(uint64 offset) { return (offset + ALIGNMENT - 1) / ALIGNME
 // word is always detected.
 static uint64 wordHash(const Mat& blocks)
 {
-    uint64 state = CV_BIG_UINT(0xcbf29ce484222325);
-    for (const uchar *p = blocks.data, *end = p + blocks.rows * blocks.step; p < end; p += 8)
+    uint64 state = CV_BIG_UINT(0xcbf29ce484222325), word;
+    for (const uchar *p = blocks.data, *end = p + blocks.rows * blocks.step; p < end; p += sizeof(word))
     {
-        const uint64 word = (uint64)p[0] | (uint64)p[1] << 8 | (uint64)p[2] << 16 | (uint64)p[3] << 24 |
-                            (uint64)p[4] << 32 | (uint64)p[5] << 40 | (uint64)p[6] << 48 | (uint64)p[7] << 56;
+        std::memcpy(&word, p, sizeof(word));  // all supported machines are little-endian
         state = (state ^ word) * CV_BIG_UINT(0x100000001b3);
     }
     return state;
 }
 
-// Calls `visit` in parallel with the number and the blocks of each part that has a checksum.
-template <typename Visit> static void forEachPart(const Mat& blocks, int checkedBlocks, const Visit& visit)
+// The checksums of parts of some blocks each, computed in parallel.
+static std::vector<uint64> checksumsOf(const Mat& blocks, int checkedBlocks)
 {
-    const int parts = (int)(((int64)blocks.rows + checkedBlocks - 1) / checkedBlocks);
-    parallel_for_(Range(0, parts), [&](const Range& range) {
+    std::vector<uint64> sums((size_t)(((int64)blocks.rows + checkedBlocks - 1) / checkedBlocks));
+    parallel_for_(Range(0, (int)sums.size()), [&](const Range& range) {
         for (int i = range.start; i < range.end; i++)
         {
             const int first = i * checkedBlocks, count = std::min(checkedBlocks, blocks.rows - first);
-            visit(i, blocks.rowRange(first, first + count));
+            sums[i] = wordHash(blocks.rowRange(first, first + count));
         }
     });
+    return sums;
 }
 
 SegmentEntry writeSegment(
@@ -45,8 +47,6 @@ SegmentEntry writeSegment(
     const Mat blocks = codes.stored();
     const size_t blockBytes = PackedCodes::blockBytes(levels, codes.packing());
     const int checkedBlocks = (int)std::max(CHECKED_BYTES / blockBytes, (size_t)1);
-    std::vector<uint64> sums((size_t)(((int64)blocks.rows + checkedBlocks - 1) / checkedBlocks));
-    forEachPart(blocks, checkedBlocks, [&](int i, const Mat& part) { sums[i] = wordHash(part); });
     CheckedWriter file(filename, KIND);
     file.list(levels, 4);
     file.number(codes.packing(), 4);
@@ -54,7 +54,7 @@ SegmentEntry writeSegment(
     file.number(codes.images(), 8);
     for (size_t i = 0; i < codes.images(); i++)
         file.number(codes.rows(i), 8);
-    for (uint64 sum : sums)
+    for (uint64 sum : checksumsOf(blocks, checkedBlocks))
         file.number(sum, 8);
     const SegmentEntry entry = {number, codes.rows(), codes.images(), file.seal()};
     const std::vector<uchar> zeros((size_t)(aligned(file.size()) - file.size()), 0);
@@ -118,11 +118,10 @@ void CodeSegment::map()
             (int64)(offset - header.position()))
         header.fail("it is altered: the padding between its header and its codes is not zero");
     const size_t partRows = (size_t)checkedBlocks * CodeLayout::CODES_PER_BLOCK;
-    std::vector<uchar> intact(checksums.size());
-    forEachPart(mapped, checkedBlocks,
-            [&](int i, const Mat& part) { intact[i] = wordHash(part) == checksums[i]; });
-    const size_t wrong = std::find(intact.begin(), intact.end(), 0) - intact.begin();
-    if (wrong < intact.size())
+    const std::vector<uint64> actual = checksumsOf(mapped, checkedBlocks);
+    const size_t wrong =
+            std::mismatch(actual.begin(), actual.end(), checksums.begin()).first - actual.begin();
+    if (wrong < actual.size())
         header.fail(format("it is altered: the checksum of its rows from %lld on is wrong",
                 (long long)(wrong * partRows)));
     packed = makePtr<PackedCodes>(levels, layout, starts, mapped);

@@ -9,16 +9,14 @@
 
 namespace cv { namespace iib {
 
-static void rowsOf(const Mat& image, Mat& grey, const Range& rows)
-{
-    CV_CPU_DISPATCH(greyRows, (image, grey, rows), CV_CPU_DISPATCH_MODES_ALL);
-}
-
 Mat greyOf(const Mat& image)
 {
     Mat grey(image.size(), image.depth());
     parallel_for_(
-            Range(0, image.rows), [&](const Range& rows) { rowsOf(image, grey, rows); },
+            Range(0, image.rows),
+            [&](const Range& rows) {
+                CV_CPU_DISPATCH(greyRows, (image, grey, rows), CV_CPU_DISPATCH_MODES_ALL);
+            },
             (double)image.total() / (1 << 16));
     return grey;
 }

@@ -38,20 +38,11 @@
 #define IIB_LOOKS_UP_BYTES 0
 #endif
 //! Whether compressed() exists.
-#if CV_AVX512_SKX && IIB_NATIVE_VECTORS
-#define IIB_COMPRESSES_LANES 1
-#else
-#define IIB_COMPRESSES_LANES 0
-#endif
+#define IIB_COMPRESSES_LANES (CV_AVX512_SKX && IIB_NATIVE_VECTORS)
 //! Whether v_popcount(v_uint32) is one instruction; if not, counting bytes is cheaper. And whether SegmentSums exists, which
 //! needs an instruction that picks bytes out of a whole vector.
-#if CV_AVX512_ICL && IIB_NATIVE_VECTORS
-#define IIB_COUNTS_LANES 1
-#define IIB_SUMS_SEGMENTS 1
-#else
-#define IIB_COUNTS_LANES 0
-#define IIB_SUMS_SEGMENTS 0
-#endif
+#define IIB_COUNTS_LANES (CV_AVX512_ICL && IIB_NATIVE_VECTORS)
+#define IIB_SUMS_SEGMENTS IIB_COUNTS_LANES
 
 namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN

@@ -58,15 +58,13 @@ void sumCells(const RotatedSampleKernels<T>& kernels, const T* pixels, const int
 
 void smooth(int64 bins[BINS])
 {
-    const int reach = SMOOTHED / 2;
     for (int pass = 0; pass < SMOOTHINGS; pass++)
     {
-        int64 around[BINS + SMOOTHED - 1];  // the last bins, all, the first ones
-        std::copy(bins + BINS - reach, bins + BINS, around);
-        std::copy(bins, bins + BINS, around + reach);
-        std::copy(bins, bins + reach, around + reach + BINS);
+        int64 before[BINS];
+        std::copy_n(bins, (int)BINS, before);
         for (int i = 0; i < BINS; i++)
-            bins[i] = std::accumulate(around + i, around + i + SMOOTHED, (int64)0);
+            for (int d = 1; d <= SMOOTHED / 2; d++)
+                bins[i] += before[(i + d) % BINS] + before[(i + BINS - d) % BINS];
     }
 }
 

@@ -73,7 +73,7 @@ linear in gx and gy, so they rotate like them. The means of |gx| and |gy| are in
 |gx + gy| and |gx - gy|, the gradient's magnitude in four directions. Boxes stay upright; only their centres rotate. */
 void describeBoxes(const BatchJob& job);
 
-//! The pixels of a region's boxes, upright or rotated by any angle, in whole squares; some may be reflected.
-Rect boxPixels(const SupportRegion& region, int border, Size image);
+//! The squares of an image that boxes may use (compute.cpp).
+Rect boxBounds(int border, Size image);
 
 }}  // namespace cv::iib

@@ -58,28 +58,6 @@ private:
     T* const planes;
 };
 
-int floorHalf(int v) { return v >= 0 ? v / 2 : -((1 - v) / 2); }
-
-//! The whole squares that hold some pixels.
-Rect squaresOf(Rect pixels)
-{
-    const Point first(floorHalf(pixels.x), floorHalf(pixels.y));
-    return Rect(
-            first, Point(floorHalf(pixels.x + pixels.width + 1), floorHalf(pixels.y + pixels.height + 1)));
-}
-
-//! The pixels of whole squares.
-Rect pixelsOf(Rect squares) { return Rect(squares.tl() * (int)BOX_SQUARE, squares.size() * (int)BOX_SQUARE); }
-
-//! The squares that boxes may use.
-Rect boundsOf(int border, Size image)
-{
-    // BORDER_CLAMP ignores the squares that the edge of an image of odd size cuts, unless there are no others
-    if (border == IIB::BORDER_CLAMP)
-        return Rect(0, 0, std::max(image.width / BOX_SQUARE, 1), std::max(image.height / BOX_SQUARE, 1));
-    return squaresOf(border == IIB::BORDER_REFLECT ? reflectedImage(image) : Rect(Point(), image));
-}
-
 /* The matrix that rotates means; a row for each lane that is read. The mean of |gx cos a + gy sin a| has period 180 degrees.
  It is interpolated from its values at 0, 45, 90 and 135 degrees by 1, cos 2a, sin 2a and cos 4a. */
 void rotationMatrix(const Rotation& rotation, float matrix[BOX_LANES][BOX_LANES])
@@ -129,7 +107,7 @@ template <typename T> void describeBatch(const BatchJob& job)
     const auto& integral = band.integral();
     T* const means = job.workspace.boxMeans.get<T>(MAX_BOX_MEANS);
     BoxFrame frame;
-    frame.bounds = boundsOf(plan.parameters.border, grey.size());
+    frame.bounds = boxBounds(plan.parameters.border, grey.size());
     frame.left = integral.origin.x;
     frame.count = integral.count;
     BoxEdges edges;
@@ -175,13 +153,6 @@ bool sumsAreShort(const BatchJob& job)
 }
 
 }  // namespace
-
-Rect boxPixels(const SupportRegion& region, int border, Size image)
-{
-    // corners of rotated boxes are at most (28 sqrt(2) + 12) / 40 from the centre; 4 pixels on either side for roundings
-    const SupportRegion extent(region.centre, region.side * (region.isRotated() ? 1.3 : 1) + 8);
-    return pixelsOf(squaresOf(extent.pixels(pixelsOf(boundsOf(border, image)))));
-}
 
 void describeBoxes(const BatchJob& job)
 {

@@ -11,10 +11,41 @@ namespace {
 
 typedef std::vector<int> Indices;
 
+int floorHalf(int v) { return v >= 0 ? v / 2 : -((1 - v) / 2); }
+
+//! The whole squares that hold some pixels.
+Rect squaresOf(Rect pixels)
+{
+    const Point first(floorHalf(pixels.x), floorHalf(pixels.y));
+    return Rect(
+            first, Point(floorHalf(pixels.x + pixels.width + 1), floorHalf(pixels.y + pixels.height + 1)));
+}
+
+}  // namespace
+
+Rect boxBounds(int border, Size image)
+{
+    // BORDER_CLAMP ignores the squares that the edge of an image of odd size cuts, unless there are no others
+    if (border == IIB::BORDER_CLAMP)
+        return Rect(0, 0, std::max(image.width / BOX_SQUARE, 1), std::max(image.height / BOX_SQUARE, 1));
+    return squaresOf(border == IIB::BORDER_REFLECT ? reflectedImage(image) : Rect(Point(), image));
+}
+
+namespace {
+
 //! Whether angles come from the image. With extra channels alone, regions stay upright.
 bool findsAngles(const Parameters& p)
 {
     return p.orientation == IIB::ORIENTATION_GRADIENT && p.channels != 0;
+}
+
+//! The pixels of a region's boxes, upright or rotated by any angle, in whole squares; some may be reflected.
+Rect boxPixels(const SupportRegion& region, int border, Size image)
+{
+    const auto pixelsOf = [](Rect r) { return Rect(r.tl() * (int)BOX_SQUARE, r.size() * (int)BOX_SQUARE); };
+    // corners of rotated boxes are at most (28 sqrt(2) + 12) / 40 from the centre; 4 pixels on either side for roundings
+    const SupportRegion extent(region.centre, region.side * (region.isRotated() ? 1.3 : 1) + 8);
+    return pixelsOf(squaresOf(extent.pixels(pixelsOf(boxBounds(border, image)))));
 }
 
 //! The pixels that a region's descriptor reads.

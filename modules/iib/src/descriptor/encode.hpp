@@ -44,7 +44,7 @@ struct LevelWriter
     const double largest;     //!< four times the largest value of a pixel
     uchar* const descriptor;  //!< has the bits of the groups before
 
-    //! Whether the largest weighted sum of a level fits an int. @param longest bound of the length of cells.
+    //! Whether sums over cells of the level, times their weights, fit an int. @param longest no cell is longer.
     bool fitsInt(int level, double longest) const
     {
         const double sum = largest * longest * longest, area = longest * longest;

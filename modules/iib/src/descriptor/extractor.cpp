@@ -57,8 +57,44 @@ public:
         compute(image, noArray(), keypoints, descriptors);
     }
 
-    void compute(InputArray image, InputArrayOfArrays extraChannels, std::vector<KeyPoint>& keypoints,
-            OutputArray descriptors) CV_OVERRIDE;
+    void compute(InputArray imageArray, InputArrayOfArrays extraArrays, std::vector<KeyPoint>& keypoints,
+            OutputArray descriptors) CV_OVERRIDE
+    {
+        CV_TRACE_FUNCTION();
+
+        const Mat image = imageArray.getMat();
+        checkKeyPoints(keypoints, plan->parameters.orientation == ORIENTATION_KEYPOINT);
+        if (image.empty())
+        {
+            descriptors.release();
+            return;
+        }
+        checkImage(image);
+        const std::vector<Mat> extra = extraMaps(extraArrays, plan->parameters.extraChannels, image.size());
+
+        if (plan->parameters.border == BORDER_DROP)
+            keypoints.erase(std::remove_if(keypoints.begin(), keypoints.end(),
+                                    [&](const KeyPoint& kp) { return !isInside(*plan, kp, image.size()); }),
+                    keypoints.end());
+        if (!descriptors.needed())
+            return;
+        if (keypoints.empty())
+        {
+            descriptors.release();
+            return;
+        }
+
+        descriptors.create((int)keypoints.size(), descriptorSize(), CV_8U);
+        const Mat result = descriptors.getMat();
+        // not in memory that is still read
+        Mat rows = overlap(result, image) || std::any_of(extra.begin(), extra.end(),
+                                                     [&](const Mat& map) { return overlap(result, map); })
+                           ? Mat(result.size(), CV_8U)
+                           : result;
+        describe(*plan, image, extra, keypoints, rows);
+        if (rows.data != result.data)
+            rows.copyTo(descriptors);
+    }
 
     void detectAndCompute(InputArray imageArray, InputArray mask, std::vector<KeyPoint>& keypoints,
             OutputArray descriptors, bool useProvidedKeypoints) CV_OVERRIDE
@@ -123,9 +159,28 @@ public:
 
     String getDefaultName() const CV_OVERRIDE { return Feature2D::getDefaultName() + ".IIB"; }
     using Feature2D::write;
-    void write(FileStorage& fs) const CV_OVERRIDE;
+    void write(FileStorage& fs) const CV_OVERRIDE
+    {
+        // one node, so that Algorithm::load() reads files of Feature2D::write(filename)
+        fs << "IIB"
+           << "{";
+        writeParameters(fs, plan->parameters);
+        fs << "detector"
+           << "{";
+        writeDetector(fs, *detector);
+        fs << "}"
+           << "}";
+    }
     using Feature2D::read;
-    void read(const FileNode& fn) CV_OVERRIDE;
+    void read(const FileNode& node) CV_OVERRIDE
+    {
+        const Parameters parameters = readParameters(node, plan->parameters);
+        const FileNode detectorNode =
+                nodeNamed(node, "IIB")["detector"];  // missing in files of the first versions
+        const Ptr<Feature2D> d = detectorNode.empty() ? detector : readDetector(detectorNode, detector);
+        plan = makePlan(parameters);
+        detector = d;
+    }
     void save(const String& filename) const CV_OVERRIDE { saveWhole(*this, filename); }
 
 private:
@@ -167,68 +222,6 @@ private:
     Ptr<const DescriptorPlan> plan;
     Ptr<Feature2D> detector;
 };
-
-void IIBDescriptorExtractor_Impl::compute(InputArray imageArray, InputArrayOfArrays extraArrays,
-        std::vector<KeyPoint>& keypoints, OutputArray descriptors)
-{
-    CV_TRACE_FUNCTION();
-
-    const Mat image = imageArray.getMat();
-    checkKeyPoints(keypoints, plan->parameters.orientation == ORIENTATION_KEYPOINT);
-    if (image.empty())
-    {
-        descriptors.release();
-        return;
-    }
-    checkImage(image);
-    const std::vector<Mat> extra = extraMaps(extraArrays, plan->parameters.extraChannels, image.size());
-
-    if (plan->parameters.border == BORDER_DROP)
-        keypoints.erase(std::remove_if(keypoints.begin(), keypoints.end(),
-                                [&](const KeyPoint& kp) { return !isInside(*plan, kp, image.size()); }),
-                keypoints.end());
-    if (!descriptors.needed())
-        return;
-    if (keypoints.empty())
-    {
-        descriptors.release();
-        return;
-    }
-
-    descriptors.create((int)keypoints.size(), descriptorSize(), CV_8U);
-    const Mat result = descriptors.getMat();
-    // not in memory that is still read
-    Mat rows = overlap(result, image) || std::any_of(extra.begin(), extra.end(),
-                                                 [&](const Mat& map) { return overlap(result, map); })
-                       ? Mat(result.size(), CV_8U)
-                       : result;
-    describe(*plan, image, extra, keypoints, rows);
-    if (rows.data != result.data)
-        rows.copyTo(descriptors);
-}
-
-void IIBDescriptorExtractor_Impl::write(FileStorage& fs) const
-{
-    // one node, so that Algorithm::load() reads files of Feature2D::write(filename)
-    fs << "IIB"
-       << "{";
-    writeParameters(fs, plan->parameters);
-    fs << "detector"
-       << "{";
-    writeDetector(fs, *detector);
-    fs << "}"
-       << "}";
-}
-
-void IIBDescriptorExtractor_Impl::read(const FileNode& node)
-{
-    const Parameters parameters = readParameters(node, plan->parameters);
-    const FileNode detectorNode =
-            nodeNamed(node, "IIB")["detector"];  // missing in files of the first versions
-    const Ptr<Feature2D> d = detectorNode.empty() ? detector : readDetector(detectorNode, detector);
-    plan = makePlan(parameters);
-    detector = d;
-}
 
 }  // namespace
 

@@ -13,8 +13,8 @@ struct KeyPointBatch
 {
     Rect area;  //!< contains all their regions
     int rows;   //!< of the highest region
-    std::vector<int>
-            keypoints;  //!< indices, sorted by the band in which the region ends, then from left to right
+    //! Indices, sorted by the band in which the region ends, then from left to right.
+    std::vector<int> keypoints;
 
     static constexpr int BAND_ROWS = 8;  //!< keypoints of a band share sums in the cache
 

@@ -9,9 +9,6 @@
 
 namespace cv { namespace iib {
 
-//! Bound of the lengths of the n cells in a row of a support region.
-inline double longestCell(double side, int n) { return std::ceil(side / n); }
-
 //! The area of an image that is reflected once at each side (BORDER_REFLECT_101).
 inline Rect reflectedImage(Size image)
 {

@@ -121,11 +121,6 @@ private:
     int* sums;
 };
 
-int samplesInRow(const SupportRegion& region, int granularity)
-{
-    return region.side <= 64 && granularity <= 5 ? 32 : 64;
-}
-
 template <typename T> void describeBatch(const BatchJob& job)
 {
     const DescriptorPlan& plan = job.plan;
@@ -137,7 +132,7 @@ template <typename T> void describeBatch(const BatchJob& job)
     {
         const SupportRegion& region = job.regions[k];
         const Rotation rotation(region.angle);
-        const int n = samplesInRow(region, p.granularity);
+        const int n = region.side <= 64 && p.granularity <= 5 ? 32 : 64;
         // Two by two samples a cell, unless the cells are fewer.
         const int sub = plan.cellsInRow() == n ? 1 : 2;
         const SampleGrid grid = gridOf(region, rotation, n, sub, p.border, job.grey.size());

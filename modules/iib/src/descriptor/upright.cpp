@@ -44,16 +44,9 @@ void describeBatch(const BatchJob& job, const ChannelGroup& group, const std::ve
         band.advance(batch.bandEnd(std::max(edges.y[n], batch.area.y)));
         band.cells(edges, n, cells);
         const LevelWriter writer = {job, group, edges, 4. * bounds.value, job.descriptors.ptr(k)};
-        writer.writeFitting(plan.finest, cells, longestCell(region.side, n));
+        writer.writeFitting(plan.finest, cells, std::ceil(region.side / n));
     }
 }
-
-//! A way to make sums over cells; it applies if pixels and sums fit its types.
-struct Summation
-{
-    bool applies;
-    void (*describe)(const BatchJob&, const ChannelGroup&, const std::vector<Channel>&, const ChannelBounds&);
-};
 
 }  // namespace
 
@@ -62,7 +55,7 @@ void describeUpright(const BatchJob& job)
     double side = 0;
     for (int k : job.batch.keypoints)
         side = std::max(side, job.regions[k].side);
-    const double cell = longestCell(side, job.plan.cellsInRow());
+    const double cell = std::ceil(side / job.plan.cellsInRow());  // no cell is longer
     const double pixels = std::min(cell * cell, (double)job.batch.area.width * job.batch.area.height);
     for (const ChannelGroup& group : job.plan.groups)
     {
@@ -72,18 +65,15 @@ void describeUpright(const BatchJob& job)
         const double largestSum = bounds.value * pixels;
         const bool fits16Bits = largestSum <= USHRT_MAX, fits32Bits = largestSum <= UINT_MAX;
         const bool ofBytes = !is16Bit(channels);
-        // the fastest first; the last one always applies
-        const Summation ways[] = {
-                {ofBytes && fits16Bits && columnsAreFaster(job, channels, bounds.gradient > 0, side),
-                        describeBatch<ColumnBand, ushort>},
-                {ofBytes && fits16Bits, describeBatch<IntegralBand<short, ushort>, ushort>},
-                {ofBytes && fits32Bits, describeBatch<IntegralBand<short, unsigned>, unsigned>},
-                {fits32Bits, describeBatch<IntegralBand<int, unsigned>, unsigned>},
-                {true, describeBatch<IntegralBand<int, unsigned>, double>}};
-        const Summation* way = ways;
-        while (!way->applies)
-            way++;
-        way->describe(job, group, channels, bounds);
+        // the fastest whose pixels and sums fit its types
+        const auto describe =
+                ofBytes && fits16Bits && columnsAreFaster(job, channels, bounds.gradient > 0, side)
+                        ? describeBatch<ColumnBand, ushort>
+                : ofBytes && fits16Bits ? describeBatch<IntegralBand<short, ushort>, ushort>
+                : ofBytes && fits32Bits ? describeBatch<IntegralBand<short, unsigned>, unsigned>
+                : fits32Bits            ? describeBatch<IntegralBand<int, unsigned>, unsigned>
+                                        : describeBatch<IntegralBand<int, unsigned>, double>;
+        describe(job, group, channels, bounds);
     }
 }
 

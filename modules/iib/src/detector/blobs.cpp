@@ -24,8 +24,8 @@ struct Extremum
     float response;
     int scale, y, x;     //!< in pixels of its octave
     float around[3][3];  //!< responses around the pixel
-    float smaller,
-            larger;  //!< responses of the scales before and after; of the first and last scale: `response`
+    //! Responses of the scales before and after; those of the first and last scale have `response`.
+    float smaller, larger;
 };
 
 //! Sorts by response, strongest first, then by scale and place.

@@ -23,8 +23,8 @@ std::vector<SmoothingStep> smoothingSteps(const std::vector<double>& sigmas, dou
             // Five taps: twice (w, 1 - 2 w, w), each of which adds 2 w spacing^2. w <= 1/3 gives a single peak.
             const int spacing = cvCeil(std::sqrt(.75 * added));
             const double w = added / (4 * spacing * spacing);
-            steps.push_back({spacing,
-                    {(short)cvRound(2 * w * (1 - 2 * w) * 65536), (short)cvRound(w * w * 65536)}, 0, 0});
+            steps.push_back({spacing, (short)cvRound(2 * w * (1 - 2 * w) * 65536),
+                    (short)cvRound(w * w * 65536), 0, 0});
             variance += added;
         }
         const int distance = std::max(cvRound(.75 * sigma), 1);
@@ -55,7 +55,8 @@ ScaleSpace::ScaleSpace(const Mat& normalized_, const Octave& octave_, int first_
 {
     const std::vector<SmoothingStep>& steps = octave.steps;
     const int width = octave.size.width;
-    std::vector<int> oldest(ahead.size(), 0);  // oldest row that is needed, relative to advance()'s row
+    // From the last image back: which rows the images made of it need, relative to advance()'s row.
+    std::vector<int> oldest(ahead.size(), 0);
     for (size_t i = steps.size(); i-- > 0;)
     {
         const SmoothingStep& s = steps[i];

@@ -30,7 +30,7 @@ struct Octave
 class ScaleSpace
 {
 public:
-    //! For rows from `first` on, which is not the first of the octave; its last row is left out, too.
+    //! @param first the first row that advance() is called for, 1 or more: a row needs those above and below it.
     ScaleSpace(const Mat& normalized, const Octave& octave, int first);
 
     //! Makes ready what the other functions give for row y: `first`, then one more with each call.

@@ -15,7 +15,8 @@ class PairChunks
 public:
     PairChunks(const SearchInput& input_, const Range& range_)
         : pairs{input_.trains.layout(), Mat(), 0, 0, 0}, firstQuery(range_.start), firstTrain(0),
-          pairCount(0), input(input_), range(range_), step(input.chunk.codeBlocksFor(input.policy)),
+          pairCount(0), input(input_), range(range_),
+          step(input.policy.margin >= 0 ? input.chunk.codeBlocksOfLimits : input.chunk.codeBlocks),
           nextBlock(0), limits(range.size(), input.policy.limit)
     {
     }

@@ -21,10 +21,6 @@ struct SearchCost
 second-level cache of 512 KB. Tests use smaller chunks. */
 struct ScanChunk
 {
-    int codeBlocksFor(const PruningPolicy& policy) const
-    {
-        return policy.margin >= 0 ? codeBlocksOfLimits : codeBlocks;
-    }
     int queryCount = 4096, codeBlocks = 128, codeBlocksOfLimits = PruningPolicy::CODE_BLOCKS_OF_LIMITS;
 };
 

@@ -14,8 +14,6 @@ namespace {
 
 template <typename T> using HalveFunc = void (*)(const T* const rows[4], T* half, int halfWidth);
 
-Size halfOf(Size size) { return Size((size.width + 1) / 2, (size.height + 1) / 2); }
-
 //! The blurs at the smallest size: `passes` times (weight, 256 - 2 weight, weight) / 256.
 struct Blurs
 {
@@ -42,7 +40,7 @@ public:
     {
         sizes.push_back(size);
         for (int i = 0; i < blurs.levels; i++)
-            sizes.push_back(halfOf(sizes.back()));
+            sizes.push_back(Size((sizes.back().width + 1) / 2, (sizes.back().height + 1) / 2));
         double largest = 255;
         if (grey.depth() == CV_16U)
             minMaxIdx(grey, 0, &largest);

@@ -26,22 +26,13 @@ std::vector<Ptr<IIB>> variousExtractors()
 
 TEST(IIB_Input, threads_and_repetition_change_no_bit)
 {
-    const int before = getNumThreads();
     const Mat image = texture(SIZE, CV_8U, 1);
     const std::vector<KeyPoint> keypoints = scatter(SIZE, 300, 8.f, 90.f, 2);
     for (const Ptr<IIB>& iib : variousExtractors())
-    {
-        setNumThreads(1);
-        const Mat expected = describe(*iib, image, keypoints);
-        for (int threads : {1, 2, 8})
-        {
-            setNumThreads(threads);
-            for (int again = 0; again < 2; again++)
-                EXPECT_EQ(0, differingBits(expected, describe(*iib, image, keypoints)))
-                        << threads << " threads";
-        }
-    }
-    setNumThreads(before);
+        forEveryNumberOfThreads([&] { return describe(*iib, image, keypoints); },
+                [](const Mat& expected, const Mat& actual) {
+                    EXPECT_EQ(0, differingBits(expected, actual));
+                });
 }
 
 TEST(IIB_Input, one_object_serves_several_threads)

@@ -74,11 +74,9 @@ TEST(IIB_Detector, behind_detect_and_compute)
     {
         if (detector != orb)
             iib->setDetector(detector);
-        std::vector<KeyPoint> expected, detected, keypoints(5);
-        detector->detect(image, expected);
+        std::vector<KeyPoint> expected = found(*detector, image), keypoints(5);
         ASSERT_GT(expected.size(), 10u);
-        iib->detect(image, detected);
-        expectSameKeyPoints(expected, detected);
+        expectSameKeyPoints(expected, found(*iib, image));
         Mat descriptors, again;
         iib->detectAndCompute(image, noArray(), keypoints, descriptors);
         expectSameKeyPoints(expected, keypoints);
@@ -120,8 +118,7 @@ TEST(IIB_Detector, images_of_every_type)
         {
             SCOPED_TRACE(detector->getDefaultName() + " " + typeToString(type));
             const Mat image = converted(grey, type);
-            std::vector<KeyPoint> expected, detected;
-            detector->detect(grey, expected);
+            std::vector<KeyPoint> expected = found(*detector, grey), detected;
             ASSERT_GT(expected.size(), 10u);
             Mat descriptors;
             const Ptr<IIB> iib = IIB::createFor(detector);
@@ -163,11 +160,9 @@ TEST(IIB_Detector, any_number_in_a_mask_but_0_allows)
     ones.colRange(40, 280).setTo(1);
     for (const Ptr<Feature2D>& detector : bothWith(ORB::create()))
     {
-        std::vector<KeyPoint> expected, keypoints;
-        detector->detect(image, expected, ones * 255);
-        detector->detect(image, keypoints, ones);
+        const std::vector<KeyPoint> expected = found(*detector, image, ones * 255);
         ASSERT_GT(expected.size(), 50u);
-        expectSameKeyPoints(expected, keypoints);
+        expectSameKeyPoints(expected, found(*detector, image, ones));
     }
 }
 
@@ -236,9 +231,9 @@ TEST(IIB_CreateFor, recommended_is_hessian_and_universal)
 {
     const Mat image = relit(scene(Size(320, 240), 3), 4);
     const Ptr<IIB> iib = IIB::createRecommended(200);
-    std::vector<KeyPoint> expected, keypoints;
+    const std::vector<KeyPoint> expected = found(*HessianDetector::create(200), image);
+    std::vector<KeyPoint> keypoints;
     Mat descriptors;
-    HessianDetector::create(200)->detect(image, expected);
     iib->detectAndCompute(image, noArray(), keypoints, descriptors);
     ASSERT_GT(expected.size(), 100u);
     expectSameKeyPoints(expected, keypoints);

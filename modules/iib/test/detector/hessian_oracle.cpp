@@ -100,7 +100,8 @@ struct Octave
     Octave(const Map& image, const std::vector<double>& sigmas, int begin_, int end_, int spacing_)
         : spacing(spacing_), first(std::max(begin_ - 1, 0)), begin(begin_), end(end_)
     {
-        Map map = spacing == 1 ? image : halvedMap(image);
+        // without the last row and column of an odd size, which `halved` continues
+        Map map = spacing == 1 ? image : Map(halved(image)(Rect(0, 0, image.cols / 2, image.rows / 2)));
         double variance = spacing == 1 ? 0. : .75 / 4;
         for (int scale = first; scale < std::min(end + 1, (int)sigmas.size()); scale++)
         {
@@ -113,23 +114,6 @@ struct Octave
             }
             responses.push_back(responsesOf(map, sigma));
         }
-    }
-
-    //! 16 pixels, weighted 1, 3, 3, 1 in both directions; grey levels in 2^-6 need no rounding.
-    static Map halvedMap(const Map& image)
-    {
-        const int weights[] = {1, 3, 3, 1};
-        Map half(image.rows / 2, image.cols / 2);
-        for (int y = 0; y < half.rows; y++)
-            for (int x = 0; x < half.cols; x++)
-            {
-                half(y, x) = 0;
-                for (int i = 0; i < 4; i++)
-                    for (int j = 0; j < 4; j++)
-                        half(y, x) +=
-                                weights[i] * weights[j] * pixel(image, 2 * y - 1 + i, 2 * x - 1 + j) / 64;
-            }
-        return half;
     }
 };
 

@@ -18,15 +18,6 @@ std::vector<cv::KeyPoint> findBlobs(const cv::Mat& grey, const cv::iib::HessianD
  place and scale. All of them, in any order, of whole pixels and scales. */
 std::vector<cv::KeyPoint> blobsByDefinition(const cv::Mat& grey, const cv::iib::HessianDetector& parameters);
 
-//! The detector's keypoints.
-inline std::vector<cv::KeyPoint> found(
-        const cv::iib::HessianDetector& detector, cv::InputArray image, cv::InputArray mask = cv::noArray())
-{
-    std::vector<cv::KeyPoint> keypoints;
-    const_cast<cv::iib::HessianDetector&>(detector).detect(image, keypoints, mask);
-    return keypoints;
-}
-
 }  // namespace oracle
 
 #endif

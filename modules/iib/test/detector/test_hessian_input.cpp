@@ -5,11 +5,8 @@
 #include "../support/temporary_file.hpp"
 #include "../support/test_errors.hpp"
 #include "../support/textures.hpp"
-#include "hessian_oracle.hpp"
 
 namespace opencv_test { namespace {
-
-using oracle::found;
 
 TEST(IIB_HessianDetector, takes_every_type_of_image)
 {

@@ -84,8 +84,13 @@ TEST(IIB_Matcher, all_together_as_the_oracle)
             oracle.thresholds = bits & 8 ? std::vector<float>(2, 0.35f) : std::vector<float>();
             const Ptr<HierarchicalMatcher> matcher = oracle.matcher();
             expectKnnAsOracle(*matcher, oracle, queries, k);
-            if (k == 1)
-                expectRadiusAsOracle(*matcher, oracle, queries);
+            Matches within;
+            for (float radius : {0.5f, 20.f, 60.9f, 1e9f})  // from less than any distance to more than any
+                if (k == 1)
+                {
+                    matcher->radiusMatch(queries, within, radius, oracle.masks);
+                    expectEqual(oracle.radius(queries, (int)std::min(radius, 1e6f)), within);
+                }
         }
 }
 

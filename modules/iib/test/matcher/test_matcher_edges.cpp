@@ -264,8 +264,6 @@ TEST(IIB_MatcherEdges, long_codes_take_no_second_copy)
 // Calls without queries or train descriptors: of a matcher without images, and of one with an image that has no rows.
 const Mat SOME = randomDescriptors(1, 5, 42), NONE;
 
-Ptr<HierarchicalMatcher> createMatcher() { return HierarchicalMatcher::create({2, 8, 32}); }
-
 //! Results of an earlier call.
 const std::vector<DMatch> OLD(7);
 const Matches OLD_ROWS(7, std::vector<DMatch>(2));
@@ -295,7 +293,8 @@ TEST(IIB_MatcherEmpty, without_train_rows_the_rows_are_empty)
 // As BFMatcher, whose knnMatch may leave its results unchanged.
 TEST(IIB_MatcherEmpty, without_queries_or_images_as_every_matcher)
 {
-    const Ptr<DescriptorMatcher> matchers[] = {createMatcher(), BFMatcher::create(NORM_HAMMING)};
+    const Ptr<DescriptorMatcher> matchers[] = {
+            HierarchicalMatcher::create(LEVELS), BFMatcher::create(NORM_HAMMING)};
     for (const Ptr<DescriptorMatcher>& matcher : matchers)
         for (bool trained : {false, true})
         {
@@ -344,7 +343,7 @@ TEST(IIB_MatcherEmpty, arguments_are_checked_the_same_through_the_base)
 
 TEST(IIB_MatcherEmpty, masks_of_no_rows_fit)
 {
-    const Ptr<HierarchicalMatcher> matcher = createMatcher();
+    const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create(LEVELS);
     matcher->add(SOME);
     Mat indices, distances;
     matcher->knnMatchArrays(Mat(0, 42, CV_8U), indices, distances, 2, std::vector<Mat>(1, Mat(0, 5, CV_8U)));

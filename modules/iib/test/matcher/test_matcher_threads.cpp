@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/matcher_oracle.hpp"
+#include "../support/textures.hpp"
 #include "../../src/matcher/kernels/hamming.hpp"
 
 #include <thread>
@@ -15,32 +16,23 @@ typedef testing::TestWithParam<int> IIB_Matcher_Threads;  // mode
 
 TEST_P(IIB_Matcher_Threads, same_result_for_every_number)
 {
+    typedef std::pair<Matches, double> Result;  // and the cost
     const Mat train = randomDescriptors(1, 1300, 42), queries = randomDescriptors(2, 1100, 42);
-    const int before = getNumThreads();
     for (bool crossCheck : {false, true})
-    {
-        Matches expected, nearby;
-        double cost = 0;
-        for (int threads : {1, 2, 8})
-        {
-            setNumThreads(threads);
-            const Ptr<HierarchicalMatcher> matcher =
-                    HierarchicalMatcher::create(LEVELS, GetParam(), 0.35f, crossCheck);
-            Matches matches, within;
-            matcher->knnMatch(queries, train, matches, 2);
-            matcher->radiusMatch(queries, train, within, 30);
-            if (threads == 1)
-            {
-                expected = matches;
-                nearby = within;
-                cost = matcher->matchCost();
-            }
-            expectEqual(expected, matches);
-            expectEqual(nearby, within);
-            EXPECT_EQ(cost, matcher->matchCost());
-        }
-    }
-    setNumThreads(before);
+        forEveryNumberOfThreads(
+                [&] {
+                    const Ptr<HierarchicalMatcher> matcher =
+                            HierarchicalMatcher::create(LEVELS, GetParam(), 0.35f, crossCheck);
+                    Matches matches, within;
+                    matcher->knnMatch(queries, train, matches, 2);
+                    matcher->radiusMatch(queries, train, within, 30);
+                    matches.insert(matches.end(), within.begin(), within.end());
+                    return Result(matches, matcher->matchCost());
+                },
+                [](const Result& expected, const Result& actual) {
+                    expectEqual(expected.first, actual.first);
+                    EXPECT_EQ(expected.second, actual.second);
+                });
 }
 
 // Threads call different functions; each result is that of a single thread.

@@ -8,6 +8,22 @@ namespace oracle {
 
 using namespace cv;
 
+Map halved(const Map& m)
+{
+    const int weights[] = {1, 3, 3, 1};
+    Map half((m.rows + 1) / 2, (m.cols + 1) / 2);
+    for (int y = 0; y < half.rows; y++)
+        for (int x = 0; x < half.cols; x++)
+        {
+            int sum = 32;
+            for (int i = 0; i < 4; i++)
+                for (int j = 0; j < 4; j++)
+                    sum += weights[i] * weights[j] * pixel(m, 2 * y - 1 + i, 2 * x - 1 + j);
+            half(y, x) = sum >> 6;
+        }
+    return half;
+}
+
 namespace {
 
 //! Grey levels in 2^-7.
@@ -23,23 +39,6 @@ Map greyLevels(const Mat& grey)
             m(y, x) = grey.depth() == CV_8U ? grey.at<uchar>(y, x) * 128
                                             : (int)((grey.at<ushort>(y, x) * factor + 32768) >> 16);
     return m;
-}
-
-//! Means of 4 x 4 pixels around the corner between four of them, rounded.
-Map halved(const Map& m)
-{
-    const int weights[] = {1, 3, 3, 1};
-    Map half((m.rows + 1) / 2, (m.cols + 1) / 2);
-    for (int y = 0; y < half.rows; y++)
-        for (int x = 0; x < half.cols; x++)
-        {
-            int sum = 32;
-            for (int i = 0; i < 4; i++)
-                for (int j = 0; j < 4; j++)
-                    sum += weights[i] * weights[j] * pixel(m, 2 * y - 1 + i, 2 * x - 1 + j);
-            half(y, x) = sum >> 6;
-        }
-    return half;
 }
 
 //! A quarter of the way to the nearest neighbour, first between rows, then between columns.

@@ -62,9 +62,7 @@ RefinementScene::RefinementScene(int seed)
             lit.at<float>(y, x) = lit.at<float>(y, x) * (.5f + .4f * x / lit.cols) + 15;
     images[1] = noisy(lit, 2 * seed + 2);
 
-    std::vector<KeyPoint> detected;
-    HessianDetector::create(300)->detect(images[0], detected);
-    for (KeyPoint keypoint : detected)
+    for (KeyPoint keypoint : found(*HessianDetector::create(300), images[0]))
     {
         const Point2f place = truth(keypoint.pt);
         if (!Rect2f(20, 20, SIZE.width - 40, SIZE.height - 40).contains(place))

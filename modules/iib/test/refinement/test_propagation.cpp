@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/test_errors.hpp"
+#include "../support/textures.hpp"
 #include "refinement_scene.hpp"
 
 #include <set>
@@ -201,14 +202,7 @@ TEST_F(IIB_Propagation, many_keypoints_at_one_place_take_no_time)
 
 TEST_F(IIB_Propagation, is_the_same_for_every_number_of_threads)
 {
-    const int before = getNumThreads();
-    setNumThreads(1);
-    const Refined expected = propagate(some(5));
-    setNumThreads(3);
-    const Refined actual = propagate(some(5));
-    setNumThreads(before);
-    ASSERT_EQ(expected.matches.size(), actual.matches.size());
-    EXPECT_EQ(0, cvtest::norm(expected.points2, actual.points2, NORM_INF));
+    forEveryNumberOfThreads([] { return propagate(some(5)); }, expectSame);
 }
 
 TEST_F(IIB_Propagation, takes_points_anywhere)

@@ -3,6 +3,7 @@
 // of this distribution and at http://opencv.org/license.html.
 
 #include "../support/test_errors.hpp"
+#include "../support/textures.hpp"
 #include "refinement_scene.hpp"
 
 #include "opencv2/imgcodecs.hpp"
@@ -48,15 +49,8 @@ TEST(IIB_Refinement, has_the_documented_types_and_keeps_the_first_points)
 
 TEST(IIB_Refinement, is_the_same_for_every_number_of_threads_and_alone)
 {
-    const int before = getNumThreads();
-    setNumThreads(1);
+    forEveryNumberOfThreads([] { return refine(scene()); }, expectSame);
     const Refined expected = refine(scene());
-    for (int threads : {2, 5})
-    {
-        setNumThreads(threads);
-        expectSame(expected, refine(scene()));
-    }
-    setNumThreads(before);
     for (int i : {0, 17})
     {
         const Refined alone = refine(scene().images[0], scene().keypoints[0], scene().images[1],

@@ -99,8 +99,7 @@ TEST(IIB_RefinementAccuracy, is_drawn_to_no_part_of_a_pixel)
     Integers integers(3);
     Mat first;
     resize(whole(Rect(fine, 0, 600 * fine, 440 * fine)), first, Size(600, 440), 0, 0, INTER_AREA);
-    std::vector<KeyPoint> keypoints;
-    HessianDetector::create(800)->detect(first, keypoints);
+    const std::vector<KeyPoint> keypoints = found(*HessianDetector::create(800), first);
     for (int shift = 0; shift < fine; shift++)
     {
         Mat second;

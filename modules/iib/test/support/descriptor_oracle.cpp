@@ -334,8 +334,7 @@ Cells cellsOf(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra,
     };
 }
 
-}  // namespace
-
+//! The channels in use, of a grey image (CV_8U or CV_16U) and of extra maps of these types.
 std::vector<Channel> channelsOf(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra)
 {
     std::vector<Channel> channels;
@@ -352,6 +351,8 @@ std::vector<Channel> channelsOf(const IIB& iib, const Mat& grey, const std::vect
         }
     return channels;
 }
+
+}  // namespace
 
 Mat describe(const IIB& iib, const Mat& grey, const std::vector<Mat>& extra,
         const std::vector<KeyPoint>& keypoints)

@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "oracle_pixels.hpp"
+#include "../normalization/normalization_oracle.hpp"
 #include "opencv2/iib/descriptor.hpp"
 
 /*
@@ -20,11 +20,7 @@ typedef cv::Mat_<int> Channel;
 //! with std::atan2.
 int orientation(int gx, int gy);
 
-//! The channels in use, of a grey image (CV_8U or CV_16U) and of extra maps of these types.
-std::vector<Channel> channelsOf(
-        const cv::iib::IIBDescriptorExtractor& iib, const cv::Mat& grey, const std::vector<cv::Mat>& extra);
-
-//! keypoints.size() descriptors, for the extractor's parameters but BORDER_DROP.
+//! keypoints.size() descriptors of a grey image (CV_8U or CV_16U) and of extra maps of these types, for the extractor's parameters but BORDER_DROP.
 cv::Mat describe(const cv::iib::IIBDescriptorExtractor& iib, const cv::Mat& grey,
         const std::vector<cv::Mat>& extra, const std::vector<cv::KeyPoint>& keypoints);
 

@@ -250,14 +250,4 @@ Matches searched(const MatcherOracle& oracle, const Mat& queries, int k, int rad
     return matches;
 }
 
-void expectRadiusAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, const Mat& queries)
-{
-    Matches actual;
-    for (float radius : {0.5f, 20.f, 60.9f, 1e9f})
-    {
-        matcher.radiusMatch(queries, actual, radius, oracle.masks);
-        expectEqual(oracle.radius(queries, (int)std::min(radius, 1e6f)), actual);
-    }
-}
-
 }  // namespace opencv_test

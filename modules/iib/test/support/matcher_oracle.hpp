@@ -54,7 +54,4 @@ void expectSameParameters(const HierarchicalMatcher& a, const HierarchicalMatche
 //! The k nearest by the matcher and by the oracle, and the share of bits that were compared.
 void expectKnnAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, const Mat& queries, int k);
 
-//! Within radii from less than any distance to more than any.
-void expectRadiusAsOracle(HierarchicalMatcher& matcher, MatcherOracle& oracle, const Mat& queries);
-
 }  // namespace opencv_test

@@ -29,10 +29,34 @@ Mat texture(Size size, int depth, int seed);
 //! Keypoints in and around an image, of all sizes and directions, some of them -1. Quarters of pixels, whole degrees.
 std::vector<KeyPoint> scatter(Size size, int count, float smallest, float largest, int seed);
 
+//! The detector's keypoints.
+inline std::vector<KeyPoint> found(Feature2D& detector, InputArray image, InputArray mask = noArray())
+{
+    std::vector<KeyPoint> keypoints;
+    detector.detect(image, keypoints, mask);
+    return keypoints;
+}
+
 //! Number of bits that differ; fails if the sizes or types do.
 int differingBits(const Mat& a, const Mat& b);
 
 void expectSameKeyPoints(const std::vector<KeyPoint>& expected, const std::vector<KeyPoint>& actual);
+
+//! Expects that make() gives the same with every number of threads, and each time, by expectSame(expected, actual).
+template <typename Make, typename Expect>
+void forEveryNumberOfThreads(const Make& make, const Expect& expectSame)
+{
+    const int before = getNumThreads();
+    setNumThreads(1);
+    const auto expected = make();
+    for (int threads : {1, 2, 3, 8})
+    {
+        SCOPED_TRACE(format("%d threads", threads));
+        setNumThreads(threads);
+        expectSame(expected, make());
+    }
+    setNumThreads(before);
+}
 
 //! FNV-1a of the bytes of all rows.
 uint64 hashOf(const Mat& m);

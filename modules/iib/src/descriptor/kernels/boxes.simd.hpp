@@ -11,20 +11,6 @@ namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
-//! v_zip for pairs of values.
-inline void zipPairs(const v_uint32& a, const v_uint32& b, v_uint32& low, v_uint32& high)
-{
-#if CV_AVX2
-    v_uint64 first, second;
-    v_zip(v_reinterpret_as_u64(a), v_reinterpret_as_u64(b), first, second);
-    low = v_reinterpret_as_u32(first);
-    high = v_reinterpret_as_u32(second);
-#else
-    low = v_combine_low(a, b);
-    high = v_combine_high(a, b);
-#endif
-}
-
 //! For sums that exceed 32 bits: rare, so scalar.
 template <bool ROTATED>
 void sumSquareRow(const int* const rows[BOX_SQUARE][BOX_PLANES], int squares, const int64* above, int64* out)
@@ -66,22 +52,6 @@ inline v_uint32 pairSums(const v_int16& low, const v_int16& high)
            (v_reinterpret_as_u32(v_dotprod(high, ones)) << 16);
 }
 
-//! Interleaves four vectors; a square has 128 bits.
-inline void storeSquares(const v_uint32 pairs[BOX_LANES / 2], short* out)
-{
-    v_uint32 a[2], b[2];
-    v_zip(pairs[0], pairs[1], a[0], a[1]);
-    v_zip(pairs[2], pairs[3], b[0], b[1]);
-    for (int half = 0; half < 2; half++)
-    {
-        v_uint32 first, second;
-        zipPairs(a[half], b[half], first, second);
-        v_store_aligned(out, v_reinterpret_as_s16(first));
-        v_store_aligned(out + VTraits<v_int16>::max_nlanes, v_reinterpret_as_s16(second));
-        out += 2 * VTraits<v_int16>::max_nlanes;
-    }
-}
-
 constexpr int SAMPLE_LANES = VTraits<v_samples>::max_nlanes, LANE_VECTORS = BOX_LANES / SAMPLE_LANES;
 
 template <bool ROTATED>
@@ -89,7 +59,8 @@ void sumSquareRow(
         const short* const rows[BOX_SQUARE][BOX_PLANES], int squares, const unsigned* above, unsigned* out)
 {
     constexpr int SQUARES = VTraits<v_int16>::max_nlanes / BOX_SQUARE;
-    short CV_DECL_ALIGNED(CACHE_LINE) values[SQUARES * BOX_LANES];
+    short CV_DECL_ALIGNED(CACHE_LINE) values[SQUARES * BOX_LANES];  // a square has 128 bits
+    unsigned CV_DECL_ALIGNED(CACHE_LINE) interleaved[SQUARES * BOX_LANES / 2];
     v_samples sums[LANE_VECTORS];
     for (v_samples& sum : sums)
         sum = v_setall_samples(0);
@@ -120,7 +91,8 @@ void sumSquareRow(
             pairs[2] = pairSums(intensity, v_int16(gx + gy));
             pairs[3] = pairSums(gx, vx_setzero_s16());
         }
-        storeSquares(pairs, values);
+        v_store_interleave(interleaved, pairs[0], pairs[1], pairs[2], pairs[3]);
+        std::memcpy(values, interleaved, sizeof(values));
         const int count = std::min(SQUARES, squares - first);
         for (int c = 0; c < count; c++)
         {

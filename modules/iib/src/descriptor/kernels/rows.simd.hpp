@@ -150,18 +150,13 @@ template <typename Pixel, typename T> void widenRow(const Pixel* in, T* out, int
         out[x] = (T)in[x];
 }
 
-//! Prefix sums within groups of four, modulo 2^16.
-inline v_uint16 prefixSumsOfFour(const v_uint16& v)
+//! Prefix sums within each four pixels of a plane, from pixel x on; modulo 2^16.
+inline v_uint16 loadSums(const short* plane, int x)
 {
+    const v_uint16 v = v_reinterpret_as_u16(vx_load(plane + x));
     // 16-bit additions: for valgrind, a 64-bit sum is undefined if any of its pixels is
     const v_uint16 two = v_add_wrap(v, v_reinterpret_as_u16(v_reinterpret_as_u64(v) << 16));
     return v_add_wrap(two, v_reinterpret_as_u16(v_reinterpret_as_u64(two) << 32));
-}
-
-//! Prefix sums within each four pixels of a plane, from pixel x on.
-inline v_uint16 loadSums(const short* plane, int x)
-{
-    return prefixSumsOfFour(v_reinterpret_as_u16(vx_load(plane + x)));
 }
 
 //! The same for four planes, interleaved.

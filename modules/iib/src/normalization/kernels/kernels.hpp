@@ -16,19 +16,13 @@ constexpr int WHITE = 255 << GREY_BITS;
 
 constexpr int CONTRAST_BITS = 6;  //!< smoothed rows are normalized grey levels in 2^-6
 
-//! Weights of a five-tap filter, in 2^-16, each 0 to 16384: of the pixels one spacing away, and two.
-struct SmoothingWeights
-{
-    short near, far;
-};
-
 //! One smoothing step, and the Hessian of its result.
 struct SmoothingStep
 {
-    int spacing;  //!< of the filter's five taps, in pixels
-    SmoothingWeights weights;
-    int distance;  //!< of the Hessian's differences, in pixels; 0: no scale ends with this step
-    float factor;  //!< response / determinant of these differences, see HessianDetector
+    int spacing;      //!< of the filter's five taps, in pixels
+    short near, far;  //!< weights of the pixels one spacing away, and two; in 2^-16, each 0 to 16384
+    int distance;     //!< of the Hessian's differences, in pixels; 0: no scale ends with this step
+    float factor;     //!< response / determinant of these differences, see HessianDetector
 };
 
 //! The upper half of a float's bits, which keeps the order of positive floats and is lower for all others.

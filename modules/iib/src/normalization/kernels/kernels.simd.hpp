@@ -180,9 +180,9 @@ void repeatEnds(short* row, int width, int times)
 }
 
 inline void smoothRow(const short* a, const short* b, const short* m, const short* d, const short* e,
-        SmoothingWeights weights, short* out, int width)
+        const SmoothingStep& step, short* out, int width)
 {
-    const v_int16 near = vx_setall_s16(weights.near), far = vx_setall_s16(weights.far);
+    const v_int16 near = vx_setall_s16(step.near), far = vx_setall_s16(step.far);
     for (int x = 0; x < width; x += SHORTS)
     {
         const v_int16 c = vx_load(m + x), twice = plus(c, c);
@@ -195,9 +195,9 @@ inline void smoothRow(const short* a, const short* b, const short* m, const shor
 void smooth(const short* const rows[5], const SmoothingStep& step, short* between, short* out, int width)
 {
     const int s = step.spacing;
-    smoothRow(rows[0], rows[1], rows[2], rows[3], rows[4], step.weights, between, width);
+    smoothRow(rows[0], rows[1], rows[2], rows[3], rows[4], step, between, width);
     repeatEnds(between, width, 2 * s);
-    smoothRow(between - 2 * s, between - s, between, between + s, between + 2 * s, step.weights, out, width);
+    smoothRow(between - 2 * s, between - s, between, between + s, between + 2 * s, step, out, width);
     repeatEnds(out, width, step.distance);
 }
 
