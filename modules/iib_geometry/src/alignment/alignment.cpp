@@ -50,7 +50,7 @@ struct Alignment
     @param pixel working pixels per pixel in which the matches were refined. */
     Alignment(const AlignedPoints& matched, const WorkingPair& pair, int model, int tried,
             const Alignment* coarse, double pixel)
-        : points(matched), evidence(points, pair, tried),
+        : points(matched), evidence{points, pair, tried, Verdict(points.image, points.reference)},
           all(coarse ? fittedTransforms(points, coarse->fitted()) : fittedTransforms(evidence, model)),
           best(model == ALIGN_AUTO ? simplestTrue(all, evidence) : 0),
           beside(coarse               ? coarse->beside

@@ -74,7 +74,7 @@ Mat cornerErrors(const FittedTransform& fitted, const AlignedPoints& points,
     const std::vector<int> parts = partsOf(points.reference);
     const Correlation correlation = correlationOf(fitted, parts);
     const Square<PlanarProblem::Step> covariance =
-            covarianceOf(fitted.problem, fitted.fit, parts, ANY, correlation.inParts);
+            covarianceOf(fitted.problem, fitted.fit.model, fitted.fit.scale, parts, ANY, correlation.inParts);
     // An error that all matches share does not show in their residuals; the parts' errors show how large it may be.
     const double common =
             2 * correlation.common2 + 2 * square(RESAMPLED * pixel) * resampledShare(fitted, points, pixel);

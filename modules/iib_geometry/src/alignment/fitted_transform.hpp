@@ -12,13 +12,8 @@ struct Evidence
 {
     const AlignedPoints& points;
     const WorkingPair& pair;
-    int tried;  //!< number of view pairs in which the images were matched
-    Verdict verdict;
-
-    Evidence(const AlignedPoints& matched, const WorkingPair& images, int views)
-        : points(matched), pair(images), tried(views), verdict(matched.image, matched.reference)
-    {
-    }
+    int tried;        //!< number of view pairs in which the images were matched
+    Verdict verdict;  //!< of points in the image and in the reference
 };
 
 //! @param model AlignmentModel except ALIGN_AUTO.

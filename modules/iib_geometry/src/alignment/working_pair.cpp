@@ -9,12 +9,6 @@ const int SMALL = 480;      // pixels of the longer side: smaller views of a sea
 
 int largestFactor(const Size& size) { return std::max(std::min(size.width, size.height) / LEAST_SIDE, 1); }
 
-int factorFor(const Size& size, int workingSize)
-{
-    return std::clamp(
-            (std::max(size.width, size.height) + workingSize - 1) / workingSize, 1, largestFactor(size));
-}
-
 const int SAMPLES_ACROSS = 32;  // of the grid that measures the area that both images show
 
 }  // namespace
@@ -37,7 +31,11 @@ WorkingPair::WorkingPair(
 {
     int factors[2];
     for (int i = 0; i < 2; i++)
-        factors[i] = factorFor(images_[i]->size(), workingSize);
+    {
+        const Size size = images_[i]->size();
+        factors[i] = std::clamp(
+                (std::max(size.width, size.height) + workingSize - 1) / workingSize, 1, largestFactor(size));
+    }
     // Images of about one size keep their scales to each other, and a translation stays one.
     const int larger = std::max(factors[0], factors[1]), smaller = std::min(factors[0], factors[1]);
     if (sameScale || larger <= 2 * smaller)
@@ -188,13 +186,14 @@ double WorkingPair::inPixels(double distance) const
 Mat WorkingPair::inPixels(const AlignedPoints& points, const std::vector<bool>& agree) const
 {
     const AlignedPoints some = marked(points, agree);
-    const Matx33d back1 = described_[0]->fromImage.inv(), back2 = described_[1]->fromImage.inv();
+    Points both[2];
     Mat all(0, 4, CV_32F);
-    for (size_t i = 0; i < some.image.size(); i++)
-    {
-        const Point2d one = moved(back1, some.reference[i]), other = moved(back2, some.image[i]);
-        all.push_back(Mat(Matx14f((float)one.x, (float)one.y, (float)other.x, (float)other.y)));
-    }
+    if (some.image.empty())
+        return all;
+    perspectiveTransform(some.reference, both[0], described_[0]->fromImage.inv());
+    perspectiveTransform(some.image, both[1], described_[1]->fromImage.inv());
+    hconcat(Mat(both[0]).reshape(1), Mat(both[1]).reshape(1), all);
+    all.convertTo(all, CV_32F);
     return all;
 }
 

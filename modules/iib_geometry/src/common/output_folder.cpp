@@ -8,13 +8,6 @@ namespace cv::iib {
 
 namespace fs = std::filesystem;
 
-//! Whether a file manager writes a file of this name into the folders that it shows.
-static bool isOfFileManager(const fs::path& path)
-{
-    const fs::path name = path.filename();
-    return name == ".DS_Store" || name == "Thumbs.db" || name == "desktop.ini";
-}
-
 OutputFolder::OutputFolder(const std::string& folder, const std::function<bool(const std::string&)>& isOwn)
 {
     const size_t end = checkedName(folder).find_last_not_of('/');  // a trailing slash would hide a link
@@ -31,8 +24,9 @@ OutputFolder::OutputFolder(const std::string& folder, const std::function<bool(c
             entry.increment(error))
     {
         const std::string name = entry->path().lexically_relative(path).generic_u8string();
-        if ((entry->is_symlink(unknown) || !entry->is_directory(unknown)) &&
-                !isOfFileManager(entry->path()) && !isOwn(name))
+        const fs::path file = entry->path().filename();
+        const bool isOfFileManager = file == ".DS_Store" || file == "Thumbs.db" || file == "desktop.ini";
+        if ((entry->is_symlink(unknown) || !entry->is_directory(unknown)) && !isOfFileManager && !isOwn(name))
             CV_Error(Error::StsError,
                     folder + " holds " + name + ", which no earlier run wrote: choose another folder");
     }

@@ -13,14 +13,15 @@ namespace {
 constexpr double REFINED = .3, LEAST_REFINED = .03;
 constexpr double MAX_RATIO = 6;  // of a point's sizes in two images
 
+bool isRefined(const Match& match) { return match.deviation != Match().deviation; }
+
 }  // namespace
 
-std::vector<bool> refineAgainstViews(std::vector<Match>& matches, const Views& views, size_t least)
+void refineAgainstViews(std::vector<Match>& matches, const Views& views, size_t least)
 {
     std::map<int, std::vector<size_t>> byView;
     for (size_t i = 0; i < matches.size(); i++)
         byView[matches[i].view].push_back(i);
-    std::vector<bool> moved(matches.size());
     for (const auto& [view, numbers] : byView)
     {
         const MapImage& image = views.map.images[size_t(view)];
@@ -40,10 +41,8 @@ std::vector<bool> refineAgainstViews(std::vector<Match>& matches, const Views& v
             {
                 matches[numbers[k]].pixel = pairs.moved[k].pt;
                 matches[numbers[k]].deviation = REFINED;
-                moved[numbers[k]] = true;
             }
     }
-    return moved;
 }
 
 std::vector<Match> guidedMatches(const Views& views, const std::vector<size_t>& compared, const Lens& lens,
@@ -78,21 +77,18 @@ std::vector<Match> guidedMatches(const Views& views, const std::vector<size_t>& 
         for (const auto& [number, predicted] : best)
             if (predicted.second.view == int(view))
                 matches.push_back(predicted.second);
-    const std::vector<bool> moved = refineAgainstViews(matches, views, 1);
-    for (size_t i = 0; i < matches.size(); i++)
-        if (moved[i])
-            refined.push_back(matches[i]);
+    refineAgainstViews(matches, views, 1);
+    std::copy_if(matches.begin(), matches.end(), std::back_inserter(refined), isRefined);
     return refined;
 }
 
 void learnDeviation(std::vector<Match>& matches, const Lens& lens, const Affine3d& pose)
 {
-    const auto refined = [](const Match& m) { return m.deviation != Match().deviation; };
     std::vector<Match> some;
-    std::copy_if(matches.begin(), matches.end(), std::back_inserter(some), refined);
+    std::copy_if(matches.begin(), matches.end(), std::back_inserter(some), isRefined);
     const double deviation = std::max(LEAST_REFINED, deviationOf(errorsOf(some, lens, pose)));
     for (Match& m : matches)
-        if (refined(m))
+        if (isRefined(m))
             m.deviation = deviation;
 }
 

@@ -16,9 +16,8 @@ struct Views
 };
 
 /** Refines the pixels of matches against the map's images; refined matches get the deviation REFINED.
-@param least number of matches with an image of the map; images with fewer are skipped.
-@return which matches were refined. */
-std::vector<bool> refineAgainstViews(std::vector<Match>& matches, const Views& views, size_t least);
+@param least number of matches with an image of the map; images with fewer are skipped. */
+void refineAgainstViews(std::vector<Match>& matches, const Views& views, size_t least);
 
 /** Finds matches near projected map points, refined against the image that sees each point at the most similar size.
 @param compared images of the map whose points are used. @param frame of the pose. */

@@ -13,7 +13,10 @@ namespace {
 constexpr double RATE_NOISE = 2 * 1.7e-4;              // rad/s/sqrt(Hz)
 constexpr double FORCE_NOISE = 2 * 2.0e-3;             // m/s^2/sqrt(Hz)
 constexpr double RATE_WALK = 1e-4, FORCE_WALK = 2e-3;  // of the biases, per root second
-constexpr int64 MAX_GAP = 100000000;                   // nanoseconds between readings
+// Variances that the parts of an error gain in a second.
+constexpr double NOISE[] = {RATE_NOISE * RATE_NOISE, 0, FORCE_NOISE* FORCE_NOISE, RATE_WALK* RATE_WALK,
+        FORCE_WALK* FORCE_WALK, 0};
+constexpr int64 MAX_GAP = 100000000;  // nanoseconds between readings
 
 Matx33d turnBy(const Vec3d& vector) { return Affine3d(vector).rotation(); }
 
@@ -84,13 +87,8 @@ bool integrate(const std::vector<ImuReading>& readings, int64 from, int64 to, Im
             continue;
         ImuState::Matrix& c = *covariance;
         c = step * c * step.t();
-        for (int i = 0; i < 3; i++)
-        {
-            c(ImuState::TURN + i, ImuState::TURN + i) += RATE_NOISE * RATE_NOISE * dt;
-            c(ImuState::VELOCITY + i, ImuState::VELOCITY + i) += FORCE_NOISE * FORCE_NOISE * dt;
-            c(ImuState::RATE + i, ImuState::RATE + i) += RATE_WALK * RATE_WALK * dt;
-            c(ImuState::FORCE + i, ImuState::FORCE + i) += FORCE_WALK * FORCE_WALK * dt;
-        }
+        for (int i = 0; i < ImuState::SIZE; i++)
+            c(i, i) += NOISE[i / 3] * dt;
         *change = step * *change;
     }
     return true;

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "../pose/camera_pose.hpp"
+#include "../pose/two_views.hpp"
 #include "imu_motion.hpp"
 
 namespace cv::iib {
@@ -44,30 +45,27 @@ struct Step
     ImuState::Matrix expectedCovariance, covariance, change;
 };
 
-//! The index in a state's error of coordinate i of a pose: position, then rotation.
-int stateIndex(int i) { return i < 3 ? ImuState::POSITION + i : ImuState::TURN + i - 3; }
+//! The matrix H that selects a pose's coordinates, position and rotation, from a state's errors.
+Matx<double, 6, ImuState::SIZE> selection()
+{
+    Matx<double, 6, ImuState::SIZE> H;
+    setBlock(H, 0, ImuState::POSITION, Matx33d::eye());
+    setBlock(H, 3, ImuState::TURN, Matx33d::eye());
+    return H;
+}
 
-/** Updates a state by a measured pose: position and rotation about the world's axes (Kalman 1960). With H the rows of
-these six and P the state's covariance, the gain is K = P H' (H P H' + R)^-1, and P' = P - K H P.
+/** Updates a state by a measured pose: position and rotation about the world's axes (Kalman 1960). With the state's
+covariance P, the gain is K = P H' (H P H' + R)^-1, and P' = P - K H P.
 @return the innovation's squared Mahalanobis length: chi^2 with six degrees of freedom. */
 double update(const Affine3d& pose, const Matx66d& measured, ImuState& state, ImuState::Matrix& covariance)
 {
     ImuState seen = state;
     seen.rotation = pose.rotation();
     seen.position = pose.translation();
-    const ImuState::Errors difference = minus(seen, state);
-    Matx66d sum;
-    Matx<double, ImuState::SIZE, 6> columns;
-    Vec6d offset;
-    for (int i = 0; i < 6; i++)
-    {
-        offset[i] = difference[stateIndex(i)];
-        for (int row = 0; row < ImuState::SIZE; row++)
-            columns(row, i) = covariance(row, stateIndex(i));
-        for (int k = 0; k < 6; k++)
-            sum(i, k) = covariance(stateIndex(i), stateIndex(k)) + CORRELATED * measured(i, k);
-    }
-    Matx66d inverse = sum.inv(DECOMP_CHOLESKY);
+    const Matx<double, 6, ImuState::SIZE> H = selection();
+    const Matx<double, ImuState::SIZE, 6> columns = covariance * H.t();
+    const Vec6d offset = H * minus(seen, state);
+    Matx66d inverse = (H * columns + CORRELATED * measured).inv(DECOMP_CHOLESKY);
     // The gain of an outlier is reduced until it is plausible.
     const double squared = offset.dot(inverse * offset);
     if (squared > MAX_SQUARED)
@@ -244,10 +242,7 @@ ImuFrame imuFrame(int64 time, const Location& image, const Affine3d& cameraFromI
 //! The covariance of the camera's pose in a state.
 Matx66d ofCamera(const Step& step, const Affine3d& imuFromCamera)
 {
-    Matx66d covariance;
-    for (int i = 0; i < 6; i++)
-        for (int k = 0; k < 6; k++)
-            covariance(i, k) = step.covariance(stateIndex(i), stateIndex(k));
+    const Matx66d covariance = selection() * step.covariance * selection().t();
     return covarianceAt(covariance, step.state.rotation * imuFromCamera.translation());
 }
 

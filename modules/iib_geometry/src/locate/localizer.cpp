@@ -20,7 +20,7 @@ constexpr int RANKING = 200;          // strongest codes of an image, which rank
 constexpr double GATE = .1;           // of the longer side: search radius around a predicted point
 
 //! Mask of keypoints (rows) near the projections of points (columns).
-Mat gate(const Features& features, const std::vector<Point3d>& points, const Camera& camera,
+Mat gate(const MapImage& features, const std::vector<Point3d>& points, const Camera& camera,
         const Affine3d& prior)
 {
     const double limit = std::round(GATE * std::max(camera.size.width, camera.size.height));
@@ -103,7 +103,7 @@ std::vector<size_t> ImageLocator::similarImages(const Mat& codes) const
 }
 
 std::vector<Match> ImageLocator::matchesOf(
-        const Features& features, const std::vector<size_t>& compared, const Affine3d* prior) const
+        const MapImage& features, const std::vector<size_t>& compared, const Affine3d* prior) const
 {
     std::vector<Match> matches;
     for (size_t k : compared)
@@ -137,7 +137,7 @@ bool ImageLocator::isMirrored(const Mat& image, const Mat& mask, const LocatedIm
     flip(image, mirrored, 1);
     if (!mask.empty())
         flip(mask, mirroredMask, 1);
-    Features features;
+    MapImage features;
     extract(*iib_, mirrored, mirroredMask, features);
     if (features.pixels.empty())
         return false;

@@ -22,7 +22,7 @@ private:
     std::vector<size_t> similarImages(const Mat& codes) const;
     //! Matches an image's keypoints with points of some of the map's images.
     std::vector<Match> matchesOf(
-            const Features& features, const std::vector<size_t>& compared, const Affine3d* prior) const;
+            const MapImage& features, const std::vector<size_t>& compared, const Affine3d* prior) const;
     void locate(const Affine3d* prior, LocatedImage& found) const;
     //! Whether the mirror image agrees better with the map; symmetric parts of a mirrored image have wrong poses.
     bool isMirrored(const Mat& image, const Mat& mask, const LocatedImage& found) const;

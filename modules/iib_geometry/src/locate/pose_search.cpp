@@ -92,7 +92,8 @@ public:
             if (round == 1)
             {
                 if (found_.prepared.image.pixels.empty())  // not yet prepared for a prior
-                    found_.prepared = PreparedPicture(found_.features.picture);
+                    found_.prepared = {
+                            PreparedImage(found_.features.picture.pixels), found_.features.picture.scale};
                 refineAgainstViews(inliers_, views_, LEAST_REFINED);
                 matches_ = inliers_;
             }

@@ -14,7 +14,7 @@ constexpr size_t LEAST_INLIERS = 15;
 struct LocatedImage
 {
     Location location;
-    Features features;             //!< with the camera and, if found, the pose
+    MapImage features;             //!< with the camera and, if found, the pose
     PreparedPicture prepared;      //!< of the features' picture, during the search
     Segments segments;             //!< if lines refine the pose
     std::vector<size_t> compared;  //!< images of the map that it was matched with

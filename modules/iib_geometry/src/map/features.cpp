@@ -42,7 +42,7 @@ private:
 
 }  // namespace
 
-void extract(IIB& iib, const Mat& image, const Mat& mask, Features& features, int maxSize, float angle)
+void extract(IIB& iib, const Mat& image, const Mat& mask, MapImage& features, int maxSize, float angle)
 {
     const int side = std::max(image.cols, image.rows);
     const double scale = maxSize > 0 && side > maxSize ? (double)maxSize / side : 1;

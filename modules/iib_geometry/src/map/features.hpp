@@ -6,17 +6,14 @@
 
 namespace cv::iib {
 
-//! Features of an image, still without name, camera, pose and points.
-typedef MapImage Features;
-
 //! The extractor of a map's features: createRecommended, or the paper's detectors and descriptor.
 Ptr<IIB> extractorOf(bool orbAndAkaze, int points);
 
-/** Detects and describes keypoints, in pixels of the full image.
+/** Detects and describes keypoints, in pixels of the full image. Name, camera, pose and points stay unset.
 @param maxSize longer side, pixels, to which larger images are reduced; 0: images are not reduced.
 @param angle of all keypoints: degrees by which the image is rotated clockwise; -1: upright. */
 void extract(
-        IIB& iib, const Mat& image, const Mat& mask, Features& features, int maxSize = 0, float angle = -1);
+        IIB& iib, const Mat& image, const Mat& mask, MapImage& features, int maxSize = 0, float angle = -1);
 
 //! @throws cv::Exception unless the image is 8-bit grey or BGR and of the camera's size, and its mask fits.
 inline void checkPhotograph(const Mat& image, const Mat& mask, const Size& size)

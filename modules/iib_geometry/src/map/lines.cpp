@@ -86,9 +86,7 @@ void addLines(Map& map, const std::vector<Segments>& segments, const Pairs& pair
     std::vector<Lens> lenses;
     for (size_t i = 0; i < map.images.size(); i++)
     {
-        PosedImage image;
-        image.camera = map.images[i].camera;
-        image.cameraFromWorld = map.images[i].cameraFromWorld;
+        PosedImage image = {"", map.images[i].camera, map.images[i].cameraFromWorld, {}, {}};
         for (const Segment& s : segments[i].places)
             image.pixels.insert(image.pixels.end(), {s.begin, s.end});
         lenses.emplace_back(image.camera);

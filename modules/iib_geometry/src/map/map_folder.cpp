@@ -13,21 +13,16 @@ namespace fs = std::filesystem;
 //! The files of a map's folder; the first one marks the folder as a map.
 const std::vector<std::string> OWN = {"map.iib", "cameras.bin", "images.bin", "points3D.bin"};
 
-//! Whether a killed process left the file.
-bool isUnfinished(const std::string& name)
-{
-    return std::any_of(OWN.begin(), OWN.end(), [&](const std::string& own) { return isPartOf(own, name); });
-}
-
 }  // namespace
 
 MapFolder::MapFolder(const std::string& folder)
     : folder_(folder, [&](const std::string& name) {
-          if (isUnfinished(name))
-          {
-              leftovers_.push_back(name);
-              return true;
-          }
+          for (const std::string& own : OWN)
+              if (isPartOf(own, name))  // a killed process left the file
+              {
+                  leftovers_.push_back(name);
+                  return true;
+              }
           std::error_code error;
           return std::count(OWN.begin(), OWN.end(), name) != 0 &&  // a COLMAP model alone is not a map
                  fs::exists(systemName(endOfLinks(folder) + "/" + OWN[0]), error);

@@ -24,11 +24,12 @@ constexpr double LEAST_CONSISTENT = .1;  // share of matches that fit the poses,
 //! The number of points that each image shares with every other.
 std::vector<std::map<size_t, int>> countShared(const std::vector<PosedImage>& images)
 {
-    std::map<int, std::set<size_t>> seeing;
+    std::map<int, std::vector<size_t>> seeing;
     for (size_t i = 0; i < images.size(); i++)
         for (int point : images[i].sees)
-            if (point >= 0 && seeing[point].size() < MAX_TRACK)
-                seeing[point].insert(i);
+            if (point >= 0 && seeing[point].size() < MAX_TRACK &&
+                    (seeing[point].empty() || seeing[point].back() != i))
+                seeing[point].push_back(i);
     std::vector<std::map<size_t, int>> shared(images.size());
     for (const auto& [point, together] : seeing)
         for (size_t a : together)
@@ -166,7 +167,7 @@ Map makeMap(const std::string& model, const ImageReader& read, const MapOptions&
         const MappingReport& report)
 {
     checkOptions(options);
-    const std::vector<PosedImage> known = readModel(model);
+    std::vector<PosedImage> known = readModel(model);
     const Pairs pairs = covisible(known);
     std::mutex mutex;
     size_t done = 0;
@@ -179,11 +180,12 @@ Map makeMap(const std::string& model, const ImageReader& read, const MapOptions&
     Map map;
     map.keypoints = options.points;
     map.orbAndAkaze = options.orbAndAkaze;
-    for (const PosedImage& image : known)
+    for (PosedImage& image : known)
     {
+        image.pixels = {};  // found anew; this frees the model's
+        image.sees = {};
         map.images.emplace_back();
-        static_cast<PosedImage&>(map.images.back()) = {
-                image.name, image.camera, image.cameraFromWorld, {}, {}};
+        static_cast<PosedImage&>(map.images.back()) = image;
     }
     describeImages(map.images, read, options, step);
     MatchedRays matched = matchPairs(map.images, pairs, [&] { step(""); });

@@ -45,7 +45,8 @@ PreparedPicture PreparedPictures::of(size_t number, const Picture& picture)
         if (!prepared_[number].image.pixels.empty())
             return prepared_[number];
     }
-    const PreparedPicture made(picture);  // outside the lock: two threads may prepare the same picture
+    const PreparedPicture made = {PreparedImage(picture.pixels),
+            picture.scale};  // outside the lock: two threads may prepare the same picture
     const std::lock_guard<std::mutex> lock(mutex_);
     return prepared_[number] = made;
 }

@@ -21,9 +21,6 @@ struct PreparedPicture
 {
     PreparedImage image;
     double scale = 1;
-
-    PreparedPicture() = default;
-    explicit PreparedPicture(const Picture& picture) : image(picture.pixels), scale(picture.scale) {}
 };
 
 //! The pictures of a map's images, each prepared on first use. Threads may share one object.

@@ -91,7 +91,7 @@ MatchedRays matchPairs(
         found.rays.insert(found.rays.end(), own.begin(), own.end());
     }
     std::vector<std::vector<RayMatch>> links(pairs.size());
-    std::vector<std::pair<size_t, size_t>> counts(pairs.size());  // unguided matches, consistent ones
+    std::atomic<size_t> unguided(0), consistent(0);
     inParallel(pairs.size(), [&](size_t n) {
         const size_t a = pairs[n].first, b = pairs[n].second;
         const Mat &codes = images[a].codes, &others = images[b].codes;
@@ -112,18 +112,19 @@ MatchedRays matchPairs(
         const auto fits = [&](const DMatch& m) {
             return areConsistent(found.rays[linkOf(m).a], found.rays[linkOf(m).b]);
         };
-        counts[n] = {matches.size(), size_t(std::count_if(matches.begin(), matches.end(), fits))};
+        unguided += matches.size();
+        consistent += size_t(std::count_if(matches.begin(), matches.end(), fits));
         for (const DMatch& m : guided)
             if (fits(m))
                 links[n].push_back(linkOf(m));
         step();
     });
-    for (size_t n = 0; n < pairs.size(); n++)
+    found.matches = unguided;
+    found.consistent = consistent;
+    for (std::vector<RayMatch>& some : links)
     {
-        found.matches += counts[n].first;
-        found.consistent += counts[n].second;
-        found.links.insert(found.links.end(), links[n].begin(), links[n].end());
-        links[n] = {};
+        found.links.insert(found.links.end(), some.begin(), some.end());
+        some = {};
     }
     return found;
 }

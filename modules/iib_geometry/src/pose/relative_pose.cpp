@@ -80,14 +80,12 @@ PoseErrors estimateErrors(
     for (int i = 0; i < problem.size(); i++)
         if (fit.used[i])
             parts.push_back(partsOfAll[i]);
-    Fit<EpipolarProblem> around;
-    around.model = fit.model;
-    around.scale = fit.errorScale;
     PoseErrors errors;
     const double deviation = std::sqrt(OF_DIRECTION);
     const auto scales = Square<EpipolarProblem::Step>::diag({1, 1, 1, deviation, deviation});
     errors.covariance =
-            scales * covarianceOf(problem.subset(fit.used), around, parts, LARGEST_DEVIATION) * scales;
+            covarianceOf(problem.subset(fit.used), fit.model, fit.errorScale, parts, LARGEST_DEVIATION);
+    errors.covariance = scales * errors.covariance * scales;
     const double limit = 1.5 * (fit.errorScale > LEAST_SCALE ? fit.errorScale
                                                              : scaleWithin(fit.squared, 3 * LEAST_SCALE,
                                                                        problem.parameters(), LEAST_NOISE));

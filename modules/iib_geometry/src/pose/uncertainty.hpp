@@ -56,18 +56,19 @@ Matx<double, N, N> limited(const Matx<double, N, N>& covariance, double largest,
 }
 
 /** Covariance of the step from a fitted model to the true one.
+@param scale of the loss that the model was fitted under, or a wider one, pixels.
 @param parts partsOf() the matches.
 @param largest standard deviation of a parameter, in its unit; undetermined parameters have it.
 @param shared share of a match's variance that all matches of a part have in common. */
 template <class Problem>
-Square<typename Problem::Step> covarianceOf(const Problem& problem, const Fit<Problem>& fit,
-        const std::vector<int>& parts, double largest, double shared = SHARED)
+Square<typename Problem::Step> covarianceOf(const Problem& problem, const typename Problem::Model& model,
+        double scale, const std::vector<int>& parts, double largest, double shared = SHARED)
 {
     typedef typename Problem::Step Step;
     const double leastBend = .2;  // reached if the noise is far above the scale
     std::vector<Row<Step>> rows;
-    const double perScale2 = 1 / square(fit.scale);
-    problem.linearize(fit.model, FARTHEST * square(fit.scale), rows);
+    const double perScale2 = 1 / square(scale);
+    problem.linearize(model, FARTHEST * square(scale), rows);
     if (rows.empty())
         return Square<Step>::eye() * square(largest);
 
@@ -93,7 +94,7 @@ Square<typename Problem::Step> covarianceOf(const Problem& problem, const Fit<Pr
     };
     std::vector<Part> all(PARTS_ACROSS * PARTS_DOWN);
     Square<Step> hessian = Square<Step>::zeros(), ofGradient = hessian;  // covariance of the gradient
-    const std::vector<Square<Step>> noises = problem.noiseInDerivatives(fit.model, rows, noise2);
+    const std::vector<Square<Step>> noises = problem.noiseInDerivatives(model, rows, noise2);
     for (size_t i = 0; i < rows.size(); i++)
     {
         const Row<Step>& row = rows[i];

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "../precomp.hpp"
 #include "opencv2/imgproc.hpp"
 
 namespace cv::iib {
@@ -33,19 +34,6 @@ double areaOf(const Points& points)
     return contourArea(hull);
 }
 
-//! Removes the points at these indices and returns them.
-Points taken(Points& points, std::vector<int> indices)
-{
-    Points out;
-    std::sort(indices.begin(), indices.end(), std::greater<int>());
-    for (int i : indices)
-    {
-        out.push_back(points[i]);
-        points.erase(points.begin() + i);
-    }
-    return out;
-}
-
 //! Area of the hull without the few points that enlarge it most, removed one by one.
 double areaWithout(int few, Points points)
 {
@@ -54,8 +42,12 @@ double areaWithout(int few, Points points)
     for (int layer = 0; layer <= few && !points.empty(); layer++)
     {
         convexHull(points, hull);
-        const Points next = taken(points, hull);
-        outer.insert(outer.end(), next.begin(), next.end());
+        std::sort(hull.begin(), hull.end(), std::greater<int>());
+        for (int i : hull)
+        {
+            outer.push_back(points[i]);
+            points.erase(points.begin() + i);
+        }
     }
     for (; few > 0 && !outer.empty(); few--)
     {
@@ -64,10 +56,10 @@ double areaWithout(int few, Points points)
         for (int corner : hull)
         {
             Points others = outer;
-            taken(others, {corner});
+            others.erase(others.begin() + corner);
             areas.push_back(areaOf(others));
         }
-        taken(outer, {hull[size_t(std::min_element(areas.begin(), areas.end()) - areas.begin())]});
+        outer.erase(outer.begin() + hull[std::min_element(areas.begin(), areas.end()) - areas.begin()]);
     }
     return areaOf(outer);
 }

@@ -10,7 +10,6 @@
 namespace cv::iib {
 namespace {
 
-const double DECISIVE = -25;      // log10 of false alarms below which the search ends
 const int LEAST_CLEAR = 100;      // matches: propagation of one wrong match may give fewer
 const double SHARE_CLEAR = .6;    // of matches with supporting neighbours: decisive without a geometry
 const double SHARE_INLIERS = .8;  // of the matches: with fewer, inliers alone are propagated again
@@ -167,8 +166,6 @@ void improve(const ImageViews& first, const ImageViews& second, Matx33d map, Vie
 }
 
 }  // namespace
-
-bool ViewMatches::isDecisive() const { return logFalseAlarms < DECISIVE; }
 
 ViewMatches matchInSomeViews(const ImageViews& first, const ImageViews& second, double maxTilt)
 {

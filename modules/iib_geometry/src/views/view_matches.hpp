@@ -15,7 +15,7 @@ struct ViewMatches
     double inliers = 0;            //!< estimated number of inliers
     Matx33d map = Matx33d::eye();  //!< affine, fitted to the inliers, from pixels of image 1 to image 2
 
-    bool isDecisive() const;  //!< whether no search is needed
+    bool isDecisive() const { return logFalseAlarms < -25; }  //!< whether no search is needed
 };
 
 /** Matches the images themselves, then other views until matches are decisive. These are improved in the views of their map. All compared

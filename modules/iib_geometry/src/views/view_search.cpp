@@ -17,29 +17,21 @@ const int IMMEDIATE = 30;      // matches: support with which a candidate is tri
 const int LEAST = 4;           // matches: support with which a candidate may be tried after the search
 const int MOST_TRIED = 6;      // of candidates after the search
 
-std::vector<std::pair<View, View>> scaledViews()
+//! Pairs of views to compare, in this order.
+std::vector<std::pair<View, View>> pairsOf(double maxTilt)
 {
-    std::vector<std::pair<View, View>> views = {{View(), View()}};
+    std::vector<std::pair<View, View>> pairs = {{View(), View()}};
+    const auto add = [&](const View& one, const View& other) {
+        pairs.push_back({one, other});
+        pairs.push_back({other, one});
+    };
     for (int level = 1; level < LEVELS; level++)
-    {
-        const View reduced = View::reduced(std::pow(.5, .5 * level));
-        views.push_back({reduced, View()});
-        views.push_back({View(), reduced});
-    }
-    return views;
-}
-
-std::vector<std::pair<View, View>> tiltedViews(double tilt)
-{
-    std::vector<std::pair<View, View>> views;
-    for (double other : {1., FARTHER})
-        for (double degrees = 0; degrees < 180; degrees += LONGITUDES / tilt)
-        {
-            const View tilted = View::tilted(tilt, degrees * CV_PI / 180), reduced = View::reduced(other);
-            views.push_back({tilted, reduced});
-            views.push_back({reduced, tilted});
-        }
-    return views;
+        add(View::reduced(std::pow(.5, .5 * level)), View());
+    for (double tilt = TOLERATED; tilt < maxTilt; tilt *= TOLERATED)
+        for (double other : {1., FARTHER})
+            for (double degrees = 0; degrees < 180; degrees += LONGITUDES / tilt)
+                add(View::tilted(tilt, degrees * CV_PI / 180), View::reduced(other));
+    return pairs;
 }
 
 Matx33d rotation(double degrees)
@@ -92,13 +84,9 @@ int searchViews(const ImageViews& first, const ImageViews& second, double maxTil
         return 0;
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
     matcher->setCrossCheck(true);
-    std::vector<std::pair<View, View>> views = scaledViews();
-    for (double tilt = TOLERATED; tilt < maxTilt; tilt *= TOLERATED)
-        for (const auto& pair : tiltedViews(tilt))
-            views.push_back(pair);
     std::vector<ViewCandidate> others;
     int tried = 0;
-    for (const auto& pair : views)
+    for (const auto& pair : pairsOf(maxTilt))
     {
         const ViewCandidate candidate = compare(first, pair.first, second, pair.second, *matcher);
         tried += int(FIRST_ANGLES.size() * SECOND_ANGLES.size());

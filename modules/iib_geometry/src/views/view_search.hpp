@@ -18,9 +18,8 @@ struct ViewCandidate
 
 /** Searches for views in which two images match: relative scales from 1/4 to 4 at any rotation, then tilts.
 @param maxTilt largest tilt between the images; up to 2 no view is tilted.
-@param tryCandidate called at once with candidates of high support, at the end with the best others; true ends the search.
-Its second
-    argument is the number of pairs of views compared so far, rotations included.
+@param tryCandidate called at once with candidates of high support, at the end with the best others; true ends the search. Its second argument
+is the number of pairs of views compared so far, rotations included.
 @return the number of pairs compared in all. */
 int searchViews(const ImageViews& first, const ImageViews& second, double maxTilt,
         const std::function<bool(const ViewCandidate&, int)>& tryCandidate);

@@ -272,8 +272,8 @@ TEST(Alignment, deviation_predicts_the_errors_of_the_corners)
             const Matx33d model = fit.model;
             const Vec3d place = problem.inPixels(model) * Vec3d(300, 300, 1);
             const double error = std::hypot(place[0] / place[2] - 300, place[1] / place[2] - 300);
-            const double deviation = problem.deviation(
-                    model, covarianceOf(problem, fit, partsOf(reference), 1e3), Point2d(300, 300));
+            const double deviation = problem.deviation(model,
+                    covarianceOf(problem, model, fit.scale, partsOf(reference), 1e3), Point2d(300, 300));
             squares += error * error / (deviation * deviation) / trials;
         }
         EXPECT_GT(squares, .1) << kind;

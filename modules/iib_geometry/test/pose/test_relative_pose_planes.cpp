@@ -116,8 +116,8 @@ struct OfPlane
             }
             for (Points* points : {&first, &second})
             {
-                const Points wrong = anywhere(random, wrongMatches, 640, 480);
-                std::copy(wrong.begin(), wrong.end(), points->begin());
+                const Points others = anywhere(random, wrongMatches, 640, 480);
+                std::copy(others.begin(), others.end(), points->begin());
             }
             const PoseResult result(first, second);
             (!result.found ? refused : cv::norm(result.error(truth)) < .1 ? right : wrong)++;

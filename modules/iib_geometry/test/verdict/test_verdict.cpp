@@ -30,17 +30,15 @@ TEST(Verdict, false_alarms_are_few_of_right_matches_and_many_of_wrong_ones)
     EXPECT_THROW(logFalseAlarms(Points(59), right.points2, some, true, 1), cv::Exception);
 }
 
-TEST(Verdict, random_matches_have_no_pose)
+const Matx33d SMALL(80, 0, 40, 0, 80, 30, 0, 0, 1), LARGE(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
+
+//! Random points, four fifths of them near one line.
+Points skyline(RNG& random, int count, double height)
 {
-    RNG random(9);
-    for (int count : {5, 6, 10, 20, 50, 100, 300})
-        for (int trial = 0; trial < (count < 100 ? 6 : 2); trial++)
-        {
-            const PoseResult result(Views(random, randomPose(random, .2), count, count, 0));
-            EXPECT_FALSE(result.found) << count;
-            EXPECT_FALSE(result.reason.empty());
-            EXPECT_EQ(count, result.inliers.rows);
-        }
+    Points points = anywhere(random, count, 640, 480);
+    for (int i = 0; i < count * 4 / 5; i++)
+        points[i].y = 240 + random.gaussian(height);
+    return points;
 }
 
 //! Projects to camera 2 the points at camera 1's pixels, at depths of 4 to 12 lengths of t. @param noise pixels
@@ -61,7 +59,6 @@ Points seenAgain(RNG& random, const Points& pixels, const Matx33d& K1, const Mat
 // The same scenes as those of the wrong matches below.
 TEST(Verdict, right_matches_of_a_skyline_a_small_image_and_a_wide_scale_have_a_pose)
 {
-    const Matx33d small(80, 0, 40, 0, 80, 30, 0, 0, 1), large(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
     const RelativePose pose = cv::iib::moved({Matx33d::eye(), Vec3d(.6, .8, 0)}, {.02, .03, .01, 0, 0});
     RNG random(17);
     for (int count : {20, 50, 100, 400})
@@ -72,19 +69,17 @@ TEST(Verdict, right_matches_of_a_skyline_a_small_image_and_a_wide_scale_have_a_p
     for (int count : {100, 400})
         for (double height : {2., 5.})
         {
-            Points a = anywhere(random, count, 640, 480);
-            for (int i = 0; i < count * 4 / 5; i++)
-                a[i].y = 240 + random.gaussian(height);
-            const Points b = seenAgain(random, a, CAMERA, CAMERA, pose, .2);
+            const Points a = skyline(random, count, height),
+                         b = seenAgain(random, a, CAMERA, CAMERA, pose, .2);
             const Mat agree(count, 1, CV_8U, Scalar(1));
             EXPECT_TRUE(PoseResult(a, b).found) << count << ' ' << height;
             EXPECT_LT(logFalseAlarms(a, b, agree, true, 1.5), -3) << count << ' ' << height;
         }
     for (int count : {200, 400})
     {
-        const Points a = anywhere(random, count, 80, 60), b = seenAgain(random, a, small, large, pose, .2);
-        EXPECT_TRUE(PoseResult(a, b, 0, small, large).found) << count;
-        EXPECT_TRUE(PoseResult(b, a, 0, large, small).found) << count;
+        const Points a = anywhere(random, count, 80, 60), b = seenAgain(random, a, SMALL, LARGE, pose, .2);
+        EXPECT_TRUE(PoseResult(a, b, 0, SMALL, LARGE).found) << count;
+        EXPECT_TRUE(PoseResult(b, a, 0, LARGE, SMALL).found) << count;
     }
     for (double scale : {5., 20., 30.})
     {
@@ -93,53 +88,45 @@ TEST(Verdict, right_matches_of_a_skyline_a_small_image_and_a_wide_scale_have_a_p
     }
 }
 
-// In crowded areas, more wrong matches agree with a pose than if points were uniformly distributed.
-TEST(Verdict, wrong_matches_of_a_skyline_or_a_strip_have_no_pose)
+/* Sampson's error is small if the distance is small in either image. In crowded areas, more wrong matches agree with a pose than if points were
+uniformly distributed. */
+TEST(Verdict, wrong_matches_have_no_pose_in_any_images_at_any_scale)
 {
     RNG random(17);
+    const Size vga(640, 480), strip(640, 8);
+    const struct
+    {
+        Size first, second;
+        Matx33d camera1, camera2;
+        std::vector<int> counts;
+        std::vector<double> scales;
+    } cases[] = {{vga, vga, CAMERA, CAMERA, {5, 6, 10, 20, 50, 100, 300}, {0, 0, 0}},
+            {vga, vga, CAMERA, CAMERA, {30, 300}, {5, 20, 30, 200}},
+            {strip, strip, CAMERA, CAMERA, {100, 400}, {0, 0}},
+            {{80, 60}, {4000, 3000}, SMALL, LARGE, {200, 400}, {0}},
+            {{4000, 3000}, {80, 60}, LARGE, SMALL, {200, 400}, {0}}};
+    for (const auto& c : cases)
+        for (int count : c.counts)
+            for (double scale : c.scales)
+            {
+                const Points first = anywhere(random, count, c.first.width, c.first.height);
+                const PoseResult result(first, anywhere(random, count, c.second.width, c.second.height),
+                        scale, c.camera1, c.camera2);
+                EXPECT_FALSE(result.found) << c.first << count << ' ' << scale;
+                EXPECT_FALSE(result.reason.empty());
+                EXPECT_EQ(count, result.inliers.rows);
+            }
     for (int count : {100, 400})
         for (double height : {2., 5.})
         {
-            Points points[2];
-            for (Points& image : points)
-            {
-                image = anywhere(random, count, 640, 480);
-                for (int i = 0; i < count * 4 / 5; i++)
-                    image[i].y = 240 + random.gaussian(height);
-            }
+            const Points first = skyline(random, count, height), second = skyline(random, count, height);
+            EXPECT_FALSE(PoseResult(first, second).found) << count;
             Mat agree(count, 1, CV_8U, Scalar(1));
-            EXPECT_FALSE(PoseResult(points[0], points[1]).found) << count;
-            Mat F = findFundamentalMat(points[0], points[1], USAC_MAGSAC, 1.5, .9999, 10000, agree);
-            EXPECT_GT(logFalseAlarms(points[0], points[1], agree, true, 1.5), -3) << count;
-            const Points a = anywhere(random, count, 640, 8), b = anywhere(random, count, 640, 8);
-            EXPECT_FALSE(PoseResult(a, b).found) << count;
+            findFundamentalMat(first, second, USAC_MAGSAC, 1.5, .9999, 10000, agree);
+            EXPECT_GT(logFalseAlarms(first, second, agree, true, 1.5), -3) << count;
         }
-}
-
-// Sampson's error is small if the distance is small in either image.
-TEST(Verdict, wrong_matches_of_a_small_image_and_a_large_one_have_no_pose)
-{
-    RNG random(18);
-    const Matx33d small(80, 0, 40, 0, 80, 30, 0, 0, 1), large(4000, 0, 2000, 0, 4000, 1500, 0, 0, 1);
-    for (int count : {200, 400})
-    {
-        const Points a = anywhere(random, count, 80, 60), b = anywhere(random, count, 4000, 3000);
-        EXPECT_FALSE(PoseResult(a, b, 0, small, large).found) << count;
-        EXPECT_FALSE(PoseResult(b, a, 0, large, small).found) << count;
-    }
     const Points second = anywhere(random, 300, 640, 480), first = anywhere(random, 300, 640, 480);
     EXPECT_GT(logFalseAlarms(first, second, Mat::ones(300, 1, CV_8U), true, 1e4), 0);
-}
-
-TEST(Verdict, wrong_matches_have_no_pose_at_wide_scales)
-{
-    RNG random(19);
-    for (double scale : {5., 20., 30., 200.})
-        for (int count : {30, 300})
-        {
-            const Points a = anywhere(random, count, 640, 480), b = anywhere(random, count, 640, 480);
-            EXPECT_FALSE(PoseResult(a, b, scale).found) << scale;
-        }
 }
 
 TEST(Verdict, the_span_of_points_excludes_the_outermost)
