@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 from typing import Any, Optional, Sequence
 
 import numpy as np
@@ -41,7 +40,6 @@ class FeatureOptions:
         for field in ('detector', 'preset'):  # in any case, and members of Preset
             name = getattr(self, field)
             object.__setattr__(self, field, getattr(name, 'name', str(name)).upper())
-        object.__setattr__(self, 'mask', None if self.mask is None else os.fspath(self.mask))
 
     def check(self) -> None:
         """:raises InvalidOption: for the first wrong one, with the known ones."""

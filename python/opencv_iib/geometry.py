@@ -11,8 +11,11 @@ from opencv_iib._arguments import integer, number
 from opencv_iib._arrays import as_array, as_image, as_mask, as_matrix
 from opencv_iib.enums import AlignmentModel
 
+_Pose = NamedTuple('_Pose', [('found', bool), ('R', Any), ('t', Any), ('inliers', NDArray[np.uint8]), ('covariance', Any)])
+_Alignment = NamedTuple('_Alignment', [('found', bool), ('transform', Any), ('error', Any), ('matches', NDArray[np.float32])])
 
-class RelativePose(NamedTuple('_Pose', [('found', bool), ('R', Any), ('t', Any), ('inliers', NDArray[np.uint8]), ('covariance', Any)])):
+
+class RelativePose(_Pose):
     """The result of :func:`findRelativePose`, a tuple (found, R, t, inliers, covariance).
 
     R is 3 x 3, from the axes of camera 1 to those of camera 2; t is 3 x 1, the direction of the translation in the axes of camera 2, of length 1;
@@ -23,7 +26,7 @@ class RelativePose(NamedTuple('_Pose', [('found', bool), ('R', Any), ('t', Any),
     reason: str = ''  #: why no pose is found, a sentence
 
 
-class Alignment(NamedTuple('_Alignment', [('found', bool), ('transform', Any), ('error', Any), ('matches', NDArray[np.float32])])):
+class Alignment(_Alignment):
     """The result of :func:`alignImages`, a tuple (found, transform, error, matches).
 
     The transform is 3 x 3, from pixels of the image to pixels of the reference; the error 4 x 1, standard deviations of the places of the

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import functools
 import os
-import threading
 import time
 from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 
@@ -155,19 +154,15 @@ def _by_workers(client: Any, call: Callable[[int], Arrays], shards: Iterable[int
 _PATIENCE, _WITHOUT_WORKERS = 2, 60  # seconds
 
 
-_lock = threading.Lock()
 _indices: dict[str, MappedIndex] = {}
 
 
 def _opened(folder: str) -> MappedIndex:
     """The folder's last commit. Parts that this process has mapped stay mapped."""
     index = MappedIndex(folder)
-    with _lock:
-        known = _indices.get(folder)
-        if known is not None and known.version() == index.version():
-            return known
+    if folder not in _indices or _indices[folder].version() != index.version():
         _indices[folder] = index
-    return index
+    return _indices[folder]
 
 
 def _search_shard(folder: str, version: int, queries: np.ndarray, k: int, shard: int) -> Arrays:

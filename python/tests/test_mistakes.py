@@ -1,6 +1,5 @@
 """Messages for mistakes name the argument in words of Python, and say what to do."""
 import inspect
-import unittest
 from pathlib import Path
 from unittest import mock
 
@@ -180,19 +179,6 @@ class Texts(InFolder):
             self.expect(ValueError, 'null', lambda: use(f'{self.folder}/a\0b.yml'))
             self.expect(TypeError, 'str, bytes or os.PathLike', lambda: use(7.5))
         self.assertEqual(sorted(self.folder.iterdir()), kept)
-
-
-class Tensors(unittest.TestCase):
-
-    def test_match_rotated_reads_them_as_compute_does(self):
-        from test_functions import Tensor
-        image = np.dstack([texture(160, 120, seed=seed) for seed in (1, 2, 3)])
-        planes = Tensor(np.ascontiguousarray(np.moveaxis(image[..., ::-1], 2, 0)))
-        iib = IIB.createRecommended(100)
-        iib.setOrientation(IIB.ORIENTATION_KEYPOINT)
-        found = [opencv_iib.matchRotated(one, one, iib, HierarchicalMatcher.createRecommended()) for one in (image, planes)]
-        self.assertGreater(len(found[0][3]), 50)
-        self.assertEqual(*[[(m.queryIdx, m.trainIdx) for m in one[3]] for one in found])
 
     def test_match_rotated_checks_arguments_before_it_detects(self):
         class Never:

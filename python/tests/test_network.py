@@ -1,20 +1,20 @@
 """Workers of Dask on machines of their own, network namespaces, whose cable is cut: scripts/helpers/servers_test.sh."""
-import io
 import os
+import shutil
 import signal
-import sqlite3
 import subprocess
 import sys
 import threading
 import time
 import unittest
-from contextlib import closing, redirect_stderr
 from unittest import mock
 
 import numpy as np
 
-from opencv_iib import shards
-from support import InFolder, brute_force, cv2, texture
+from collection import Collection
+from opencv_iib import _parallel, shards
+from opencv_iib.colmap import pipeline
+from support import brute_force
 
 NAMESPACE = os.environ.get('IIB_NETWORK')  # set inside the tests' network namespace
 
@@ -28,7 +28,7 @@ def ip(*arguments):
 
 
 @unittest.skipUnless(NAMESPACE, 'no network namespace: scripts/helpers/servers_test.sh makes one')
-class NetworkTest(InFolder):
+class NetworkTest(Collection):
     """A scheduler here and three workers, each with a cable to one switch."""
 
     WORKERS = ('one', 'two', 'three')
@@ -105,24 +105,9 @@ class NetworkTest(InFolder):
         self.assertEqual([array.tobytes() for array in shards.search(folder, queries, 5, self.client)], expected)
         self.expect_left('three')
 
-    @unittest.skipIf(cv2 is None, 'no cv2')
     def test_colmap(self):
-        from opencv_iib import _parallel
-        from opencv_iib.colmap import FeatureOptions, Options, build_database, pipeline
-        images = os.path.join(self.folder, 'images')
-        os.mkdir(images)
-        world = cv2.resize(texture(160, 120, seed=3), (640, 480), interpolation=cv2.INTER_CUBIC)
-        for i in range(12):
-            cv2.imwrite(os.path.join(images, f'{i:02}.png'), world[5 * i:300 + 5 * i, 10 * i:400 + 10 * i])
-
-        def rows(client):
-            database = os.path.join(self.folder, 'database.db')
-            with redirect_stderr(io.StringIO()):
-                build_database(images, database, Options(FeatureOptions(points=300), verify='magsac'), client=client)
-            with closing(sqlite3.connect(database)) as connection:
-                rows = list(connection.iterdump())
-            os.unlink(database)
-            return rows
+        for n in range(9):
+            shutil.copy(self.images / 'a.png', self.images / f'{n}.png')
 
         def cutting(method, name, count):
             """Wraps a method: its call with this number cuts a cable."""
@@ -135,8 +120,9 @@ class NetworkTest(InFolder):
                 return original(*arguments)
             return mock.patch.object(pipeline.Database, method, call)
 
-        expected = rows(None)
-        with mock.patch.object(_parallel.Cluster, 'tile_side', 2), cutting('add_image', 'one', 3), \
-                cutting('add_pair', 'two', 10):
-            self.assertEqual(rows(self.client), expected)
+        self.build()
+        expected = self.dump()
+        with mock.patch.object(_parallel.Cluster, 'tile_side', 2), cutting('add_image', 'one', 3), cutting('add_pair', 'two', 10):
+            self.build(client=self.client)
+        self.assertEqual(self.dump(), expected)
         self.expect_left('three')

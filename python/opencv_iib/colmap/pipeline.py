@@ -100,12 +100,6 @@ class Options:
         import_cv2()
 
 
-@functools.lru_cache(maxsize=1)
-def _features(options: FeatureOptions) -> Features:
-    """Kept for all jobs of this process."""
-    return Features(options)
-
-
 def describe_image(folder: str, options: Options, name: str) -> tuple[np.ndarray, np.ndarray, int, int, str, Sequence[float], bool]:
     """COLMAP's keypoints, codes, width, height, the camera's model and parameters, and whether its focal length is known."""
     if not os.path.isdir(folder):
@@ -113,7 +107,7 @@ def describe_image(folder: str, options: Options, name: str) -> tuple[np.ndarray
     if not is_utf8(name):
         raise ValueError('its name is not UTF-8')
     file = ImageFile(os.path.join(folder, name), options.features.exif)
-    rows, codes = _features(options.features)(file.grey, file.orientation_of_camera, Masks(options.features.mask).of(name, file.grey))
+    rows, codes = Features(options.features)(file.grey, file.orientation_of_camera, Masks(options.features.mask).of(name, file.grey))
     height, width = file.grey.shape
     camera = options.camera_for(name)
     if camera is not None:
@@ -286,7 +280,7 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
         if made is None:
             raise FileExistsError(f'{database} is there already, and not of this command: remove it, or pass force (--force)')
         check_settings(database, made, settings)
-    sizes = _features(options.features).level_sizes()  # raises for a detector that cv2 lacks
+    sizes = Features(options.features).level_sizes()  # raises for a detector that cv2 lacks
     with only_writer(database + '.partial'), Database(database, settings, force) as target:
         failed = describe_images(target, images, names, options, pool, log)
         if failed == len(names):
