@@ -154,7 +154,7 @@ void checkAnswer(const Mat& reference, const Mat& mask, const Mat& image, const 
 
 FUZZ_TARGET
 {
-    const int seed = in.between(0, 3), model = in.between(-in.rarely(32), ALIGN_HOMOGRAPHY);
+    const int seed = in.between(0, 3), model = in.between(-in.rarely(32), ALIGN_AUTO);
     const Mat reference = drawPicture(in, seed, Matx33d::eye()), mask = drawMask(in, reference);
     if (in.flag())
     {
@@ -171,8 +171,9 @@ FUZZ_TARGET
         Mat found, error, matches, again(1, 1, CV_8U);
         String reason;
         bool aligned = false;
-        const bool thrown =
-                refused([&] { aligned = aligner->align(image, found, error, matches, &reason, other); });
+        int simplest = -1;
+        const bool thrown = refused(
+                [&] { aligned = aligner->align(image, found, error, matches, &reason, other, &simplest); });
         FUZZ_CHECK(thrown == !(isTaken(reference) && isTaken(image) && fits(other, image)));
         if (thrown)
             continue;
@@ -180,7 +181,8 @@ FUZZ_TARGET
                    (matches.empty() || (matches.cols == 4 && matches.type() == CV_32F)));
         FUZZ_CHECK(aligned || (found.empty() && error.empty()));
         if (aligned)
-            checkAnswer(reference, mask, image, other, model, found, error, matches);
+            checkAnswer(reference, mask, image, other, model == ALIGN_AUTO ? simplest : model, found, error,
+                    matches);
         if (mask.empty() && other.empty() && in.rarely(8))
         {
             FUZZ_CHECK(alignImages(reference, image, again, model) == aligned);

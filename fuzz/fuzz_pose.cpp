@@ -112,7 +112,7 @@ void checkTransform(ByteSource& in, const Mat& first, const Mat& second)
     if (fit.squared.empty())
         return;
     Mat values;
-    const Mat covariance(covarianceOf(problem, fit, partsOf(first), 1e6));
+    const Mat covariance(covarianceOf(problem, fit.model, fit.scale, partsOf(first), 1e6));
     FUZZ_CHECK(checkRange(problem.inPixels(fit.model)) && checkRange(covariance));
     eigen(covariance, values);
     FUZZ_CHECK(values.at<double>(values.rows - 1) >= -1e-9 * values.at<double>(0));

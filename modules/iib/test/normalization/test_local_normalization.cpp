@@ -4,31 +4,9 @@
 
 #include "../support/test_images.hpp"
 #include "normalization_oracle.hpp"
+#include "seen_image.hpp"
 
 namespace opencv_test { namespace {
-
-//! Stores its image, and finds no keypoints.
-class CaptureDetector : public Feature2D
-{
-public:
-    using Feature2D::detect;
-    void detect(InputArray image, std::vector<KeyPoint>& keypoints, InputArray) CV_OVERRIDE
-    {
-        image.copyTo(seen);
-        keypoints.clear();
-    }
-
-    Mat seen;
-};
-
-//! The image that NormalizedDetector passes to its detector.
-Mat normalized(InputArray image, float sigma)
-{
-    const Ptr<CaptureDetector> capture = makePtr<CaptureDetector>();
-    std::vector<KeyPoint> keypoints;
-    NormalizedDetector::create(capture, sigma)->detect(image, keypoints);
-    return capture->seen;
-}
 
 void expectOracle(const Mat& image, float sigma)
 {
