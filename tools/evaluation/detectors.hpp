@@ -32,7 +32,6 @@ struct Detector
     std::function<Detection(const cv::Mat&, const std::string&)> detect;
     std::vector<Configuration> others;  //!< other descriptors of the same points
     std::string folder;                 //!< of lists of keypoints, one per image; empty: detects in the image
-    std::vector<std::string> only;      //!< names of the descriptors of its points; empty: all
 
     //! Whether it has keypoints of an image.
     bool knows(const std::string& imageFile) const;
@@ -58,7 +57,7 @@ struct Described
 };
 
 /** Describes a detector's points in an image, by the same descriptors in the same order for every image: its own, Detector::others,
-IIB's presets, and last IIB's default. Detector::only limits them. */
+IIB's presets, and last IIB's default. */
 std::vector<Described> describeAll(const Detector& detector, const cv::Mat& image, const std::string& file);
 
 /** Caches the results of describeAll for the last images. An image occurs in several pairs, and describing takes most of the time.

@@ -137,7 +137,7 @@ PLANS = {
     'robustness.csv': (lambda row: ['turned'] * (row['set'] not in TRAINED_ON), ('kind', 'configuration', 'target'),
                        columns('precision', 'recall')),
     'alignment.csv': (alignment_place, ('model',), {'found': column('found'), 'squares': column('squares'), 'within_1': within(1), 'within_3': within(3)}),
-    'wxbs.csv': (lambda row: [row['set'], 'all'], ('method', 'points'), columns('matches', 'within_10', 'share')),
+    'wxbs.csv': (lambda row: [row['set'], 'all'], ('method', 'points'), columns('found', 'matches', 'within_10', 'share')),
     'estimators.csv': (light_place, ('detector', 'descriptor', 'points', 'estimator'),
                        {'inliers': column('inliers'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_20': pose_area(20), 'at_5': pose_area(5)}),
 }

@@ -4,8 +4,7 @@
 """Measures maps of many images, made by repetition: map.py PLACE... --out FILE [--images N...], from few images to many
 
 PLACE: folders of tools/synthetic/views.py. Their views at noon are repeated, each copy of a place a hundred metres from the last, until the map
-has N images. Then views under other lights are localized in it; since copies look alike, in any of them. Dependencies: those of
-tools/localization/measure.py."""
+has N images. Then views under other lights are localized in it; since copies look alike, in any of them. Needs opencv_iib and cv2."""
 import argparse
 import datetime
 import json
@@ -23,8 +22,8 @@ import numpy as np
 import opencv_iib
 from opencv_iib import _core, localization
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'localization'))
-import measure  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'evaluation'))
+from datasets import read_place  # noqa: E402
 
 APART = 100.  # metres
 KEYPOINTS, QUERIES = 1000, 12
@@ -37,7 +36,7 @@ def write_model(places, count, folder):
     images, copies = [], 0
     for copy in range(count):
         for place in places:
-            camera, poses = measure.read_place(place / 'map')
+            camera, poses = read_place(place / 'map')
             for name, pose in poses.items():
                 moved = pose.copy()
                 moved[:3, 3] -= APART * copies * pose[:3, 0]
