@@ -12,7 +12,7 @@ import summaries
 RESULTS = pathlib.Path(__file__).resolve().parents[2] / 'doc/results'
 CHAIN, OTHER = ('Hessian', 'IIB UNIVERSAL'), ('SIFT normalized', 'SIFT')
 # Kinds of places, grouped by renderer and by whether a preset was trained on walks through other places of the kind.
-GROUPS = {'trained on the kind': ('room', 'terrain'), 'same renderer': ('street', 'facade'), 'new kinds': ('yard', 'hall'), 'other renderer': ('court', 'store')}
+GROUPS = {'trained on the kind': ('room', 'terrain'), 'same renderer': ('street', 'facade'), 'new kinds': ('yard', 'hall'), 'other renderer': ('court',)}
 COUNTED = CHAIN, ('Hessian', 'SIFT'), ('SIFT normalized', 'IIB UNIVERSAL'), OTHER, ('SIFT', 'SIFT')  # methods of the table of neighbours
 WRONG = 10  # degrees
 POINTS = {'Hessian': 'HessianDetector', 'SIFT normalized': 'SIFT normalized', 'SIFT CLAHE': 'SIFT on CLAHE'}

@@ -1,5 +1,5 @@
 """Renders views by Blender's Cycles, another renderer than the scenes' POV-Ray, in views.py's layout:
-blender --background --python cycles.py -- FOLDER [--seed N ...] [--scenes court store] [--size WIDTH HEIGHT]. See README.md."""
+blender --background --python cycles.py -- FOLDER [--seed N ...] [--size WIDTH HEIGHT]. See README.md."""
 import argparse
 import pathlib
 import random
@@ -20,9 +20,8 @@ SAMPLES = 12  # rays a pixel; the remaining noise serves as a sensor's
 # Sun: degrees of azimuth and altitude, strength, tint; strength and tint of the sky; of the lamps.
 SUN = {"noon": (215, 55, 4, (1, .95, .86), 1.0, (.55, .7, 1), 0), "overcast": (215, 60, 0, (1, 1, 1), 1.3, (.8, .85, .9), 0),
        "dusk": (40, 6, 1.4, (1, .5, .25), .22, (.6, .5, .6), .3), "night": (160, 40, .03, (.6, .75, 1), .012, (.4, .5, 1), 1)}
-PLACES = {"court": Scene(1.0, None, [(-0.8, 1.7, 0, -5, 4), (0.5, 1.7, 2, 6, 5), (-0.4, 1.75, 4, -8, 4), (0.6, 1.7, 6, 4, 5)], []),
-          "store": Scene(0.75, None, [(-0.7, 1.65, 0, 5, 0), (0.4, 1.7, 1.6, -7, 1), (-0.3, 1.65, 3.2, 8, 0), (0.4, 1.7, 4.8, -4, 1)], [])}
-SCENES.update(PLACES)
+PLACE = "court"
+SCENES[PLACE] = Scene(1.0, None, [(-0.8, 1.7, 0, -5, 4), (0.5, 1.7, 2, 6, 5), (-0.4, 1.75, 4, -8, 4), (0.6, 1.7, 6, 4, 5)], [])
 
 
 def material(chance):
@@ -74,22 +73,16 @@ def lamp(at, strength):
 
 
 def build(name, seed, light):
-    """x right, y forward, z up: a court between walls with tanks and boxes, or a store with shelves."""
+    """x right, y forward, z up: a court between walls with tanks and boxes."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     chance = random.Random("%s %d" % (name, seed))
     azimuth, altitude, sun, tint, sky, above, lamps = SUN[light]
-    half, deep, high = (9, 30, 7) if name == "court" else (5, 22, 5)
+    half, deep, high = 9, 30, 7
     box(chance, (0, deep / 2, -.1), (2.4 * half, 2 * deep, .2))
     for side in (-1, 1):
         for k in range(5):
             box(chance, (side * (half + chance.uniform(.5, 1.5)), deep * (k + .3) / 5, high / 2), (2, deep / 5, high * chance.uniform(.7, 1.2)))
-            if name == "store":
-                for level in range(4):
-                    box(chance, (side * half * .72, deep * (k + .3) / 5, .3 + level), (1, deep / 5.6, .06))
-                    for _ in range(5):
-                        size = [chance.uniform(.3, .8) for _ in range(3)]
-                        box(chance, (side * half * .72, deep * (k + chance.uniform(0, .7)) / 5, .33 + level + size[2] / 2), size, chance.uniform(-.2, .2))
-            elif k:
+            if k:
                 radius, tall = chance.uniform(.7, 1.8), chance.uniform(2, 6)
                 cylinder(chance, (side * chance.uniform(4, 6), deep * k / 5, tall / 2), radius, tall)
             cylinder(chance, (side * chance.uniform(.5, .8) * half, deep / 2, chance.uniform(3, high)), chance.uniform(.05, .2), deep, True)
@@ -99,9 +92,6 @@ def build(name, seed, light):
         size = [chance.uniform(.3, 1.2) for _ in range(3)]
         at = chance.choice((-1, 1)) * chance.uniform(1.6, 3.2), chance.uniform(4, deep - 2), size[2] / 2
         box(chance, at, size, chance.uniform(-.6, .6))
-    if name == "store":
-        for k in range(6):
-            box(chance, (0, 4 * k, high), (2 * half, 2, .2))
     if sun:
         bpy.ops.object.light_add(type="SUN", rotation=(np.radians(90 - altitude), 0, np.radians(180 - azimuth)))
         bpy.context.object.data.energy, bpy.context.object.data.color, bpy.context.object.data.angle = sun, tint, .02
@@ -166,23 +156,21 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--seed", nargs="+", type=int, default=[71])
-    parser.add_argument("--scenes", nargs="+", choices=PLACES, default=list(PLACES))
     parser.add_argument("--size", type=int, nargs=2, default=SIZE)
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1:])
     for seed in options.seed:
-        for name in options.scenes:
-            for light in SUN:
-                random = np.random.default_rng([seed, LIGHTS[light]])
-                poses = walk(SCENES[name].path, MAP_VIEWS if light == "noon" else 100)
-                if light != "noon":
-                    poses = poses[np.sort(random.choice(100, VIEWS, replace=False))]
-                    poses[:, [0, 1, 3, 4]] += random.uniform(-1, 1, (VIEWS, 4)) * BESIDE
-                folder = options.out / f"{name}_{seed}" / ("map" if light == "noon" else light)
-                names = [f"{k:04d}" for k in range(len(poses))]
-                write_text(folder / "cameras.txt", cameras(name, tuple(options.size)))
-                write_text(folder / "poses.txt", tum(names, poses))
-                for k, pose in enumerate(poses):
-                    render(name, seed, light, pose, k, folder / "images" / f"{names[k]}.png", tuple(options.size))
+        for light in SUN:
+            random = np.random.default_rng([seed, LIGHTS[light]])
+            poses = walk(SCENES[PLACE].path, MAP_VIEWS if light == "noon" else 100)
+            if light != "noon":
+                poses = poses[np.sort(random.choice(100, VIEWS, replace=False))]
+                poses[:, [0, 1, 3, 4]] += random.uniform(-1, 1, (VIEWS, 4)) * BESIDE
+            folder = options.out / f"{PLACE}_{seed}" / ("map" if light == "noon" else light)
+            names = [f"{k:04d}" for k in range(len(poses))]
+            write_text(folder / "cameras.txt", cameras(PLACE, tuple(options.size)))
+            write_text(folder / "poses.txt", tum(names, poses))
+            for k, pose in enumerate(poses):
+                render(PLACE, seed, light, pose, k, folder / "images" / f"{names[k]}.png", tuple(options.size))
 
 
 main()
