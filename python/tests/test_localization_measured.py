@@ -49,7 +49,7 @@ class Measured(unittest.TestCase):
                              [['1.4 m apart', '', 'night', '2', '2', '2']])
             with mock.patch.object(uncertainty, 'MAPPED', 400), redirect_stderr(StringIO()):
                 rows = uncertainty.judge_locations(data / 'night', *uncertainty.searches(data / 'night')[0])
-            self.assertEqual([row[1:6] for row in rows], [['map', 'night', f'{n}.png', f'{what} of Localizer', 1] for n in range(2) for what in ('centre', 'rotation')])
+            self.assertEqual([row[1:5] for row in rows], [['night', f'{n}.png, map', f'{what} of Localizer', 1] for n in range(2) for what in ('centre', 'rotation')])
             self.assertTrue(all(row[-3] == 1 for row in rows), 'an error is outside the limit of 99 %')
             results, world = json.loads((out / 'results.json').read_text()), (out / 'world.js').read_text()
             video = cv2.VideoCapture(str(out / 'night.webm'))

@@ -64,11 +64,15 @@ def pose_of(numbers):
 def read_place(folder, step=1):
     """The camera, and 4 x 4 poses (camera from world) of every step-th existing image, by file name."""
     lines = [line.split() for line in (folder / 'cameras.txt').read_text().splitlines() if not line.startswith('#')]
+    if len(lines) != 1:
+        raise RuntimeError('%s/cameras.txt: needs exactly one camera' % folder)
     poses = {}
-    for line in (folder / 'poses.txt').read_text().splitlines():
-        stem, *numbers = line.split()
-        for path in (folder / 'images').glob(stem + '.*') if stem != '#' else ():
-            poses[path.name] = pose_of(numbers)
+    for number, line in enumerate((folder / 'poses.txt').read_text().splitlines(), 1):
+        if line.strip() and not line.startswith('#'):
+            stem, *numbers = line.split()
+            if len(numbers) != 7 or abs(np.linalg.norm(np.array(numbers[3:], float)) - 1) > 1e-2:
+                raise RuntimeError('%s/poses.txt, line %d: not a name, a place and a quaternion' % (folder, number))
+            poses.update((path.name, pose_of(numbers)) for path in (folder / 'images').glob(stem + '.*'))
     return Camera.parse(','.join(lines[0][1:])), dict(sorted(poses.items())[::step])
 
 
@@ -171,7 +175,11 @@ def image_pairs(roots):
         images, name = sequence_of(folder)
         still = not list(folder.glob(name.split('%d')[0] + '*')) if images else True
         for k in sorted(images)[1:] if not holds_views(folder) else ():
-            H = np.eye(3) if still else np.loadtxt(folder / (name % k))
+            try:
+                H = np.eye(3) if still else np.loadtxt(folder / (name % k)).reshape(3, 3)
+            except (OSError, ValueError) as error:
+                print('skipped: %s: %s' % (folder / (name % k), error), file=sys.stderr)
+                continue
             pairs.append(ImagePair(folder.parent.name, folder.name, str(k), (images[1], images[k]), H, not (folder.name in NO_LIGHT or folder.name.startswith('v_'))))
     return pairs
 

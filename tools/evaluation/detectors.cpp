@@ -199,24 +199,4 @@ std::vector<Described> describeAll(const Detector& detector, const cv::Mat& imag
     return all;
 }
 
-DescribedImages::Result DescribedImages::get(
-        const Detector& detector, const cv::Mat& image, const std::string& file)
-{
-    const Key key(detector.name, file);
-    std::unique_lock<std::mutex> lock(mutex_);
-    if (known_.count(key))
-        return known_[key];
-    lock.unlock();
-    const Result result = std::make_shared<std::vector<Described>>(describeAll(detector, image, file));
-    lock.lock();
-    if (known_.emplace(key, result).second)
-        order_.push_back(key);
-    if (order_.size() > most_)
-    {
-        known_.erase(order_.front());
-        order_.pop_front();
-    }
-    return result;
-}
-
 }  // namespace iib_tools

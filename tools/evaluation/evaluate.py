@@ -5,7 +5,9 @@
 iib_evaluation, which has the others, with the same options."""
 import argparse
 import pathlib
+import sys
 
+import opencv_iib
 from alignment import alignment
 from poses import controls, estimators
 from uncertainty import uncertainty
@@ -26,9 +28,12 @@ def main():
         parser.add_argument(other, action='append', help=argparse.SUPPRESS)
     options = parser.parse_intermixed_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    for name, measure in EXPERIMENTS.items():
-        if name in options.only or not options.only:
-            measure(options)
+    try:
+        for name, measure in EXPERIMENTS.items():
+            if name in options.only or not options.only:
+                measure(options)
+    except (RuntimeError, ValueError, OSError, opencv_iib.error) as error:
+        sys.exit('evaluate.py: %s' % error)
 
 
 if __name__ == '__main__':

@@ -22,11 +22,13 @@ CLIP = 2  # of CLAHE, the choice of OpenCV's tutorials
 LIGHTS = (2.2, 1, .25, 1, 1, 2), (.45, 1, 1, 1, 1, 3), (1.5, .3, .3, .4, 1.2, 4)
 
 
+DETECTORS = {'Hessian': opencv_iib.HessianDetector, 'SIFT': lambda count: cv2.SIFT_create(), 'ORB': cv2.ORB_create,
+             'AKAZE': lambda count: cv2.AKAZE_create(cv2.AKAZE_DESCRIPTOR_MLDB_UPRIGHT)}
+
+
 def detector_of(name, count):
-    """A detector, which also describes."""
-    base = name.split()[0]
-    made = {'Hessian': lambda: opencv_iib.HessianDetector(count), 'SIFT': lambda: cv2.SIFT_create(), 'ORB': lambda: cv2.ORB_create(count),
-            'AKAZE': lambda: cv2.AKAZE_create(cv2.AKAZE_DESCRIPTOR_MLDB_UPRIGHT)}[base]()
+    """A detector, which also describes, perhaps on the locally normalized image."""
+    made = DETECTORS[name.split()[0]](count)
     return opencv_iib.NormalizedDetector(made) if name.endswith('normalized') else made
 
 

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import opencv_iib
 from datasets import rows_of, view_pairs, write
-from methods import CHAIN, LIGHTS, UNIVERSAL, by_find_relative_pose, described, estimators as estimating, matched, moved, nearest, picture
+from methods import CHAIN, DETECTORS, LIGHTS, UNIVERSAL, by_find_relative_pose, described, estimators as estimating, matched, moved, nearest, picture
 
 RATIOS = .8, .85, .9, .92, .95
 NOISE = 6, 14  # grey levels, of the second image
@@ -41,7 +41,8 @@ def estimated(pair, light, detectors, count):
 def estimators(options):
     """Pairs in one light are judged again with the second image relit."""
     pairs, lights = view_pairs(options.data), itertools.cycle(range(len(LIGHTS)))
-    tasks = [(estimated, pair, light, options.detectors or ('SIFT', NORMALIZED, 'Hessian'), options.points)
+    detectors = [name for name in options.detectors if name.split()[0] in DETECTORS] or ('SIFT', NORMALIZED, 'Hessian')
+    tasks = [(estimated, pair, light, detectors, options.points)
              for pair in pairs for light in ((None, next(lights)) if pair.same_light else (None,))]
     write(options.out / 'estimators.csv', ['set', 'sequence', 'target', 'detector', 'descriptor', 'points', 'estimator', 'error', 'inliers'], rows_of(tasks))
 

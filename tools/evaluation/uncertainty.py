@@ -159,7 +159,7 @@ def judge_locations(place, name, folder, images, sought):
         localizer = Localizer(work / 'map', MAPPED)
     for image in sought:
         location = localizer.localize(read_image(place / 'images' / image), camera)
-        key, names = (place.parent.name, name, place.name if name == 'map' else 'same', image), ('centre of Localizer', 'rotation of Localizer')
+        key, names = (place.parent.name, place.name if name == 'map' else 'same', '%s, %s' % (image, name)), ('centre of Localizer', 'rotation of Localizer')
         if location.cam_from_world is None:
             rows += [[*key, *nothing(what)] for what in names]
             continue
@@ -171,7 +171,7 @@ def judge_locations(place, name, folder, images, sought):
 
 
 def uncertainty(options):
-    """Poses, points and corners in uncertainty.csv; locations in localization_uncertainty.csv."""
+    """How many errors are within their confidence limits."""
     views, random, points = view_pairs(options.data), Random(1), options.points
     tasks = []
     for i in range(STRANGERS * len(views)):
@@ -180,7 +180,6 @@ def uncertainty(options):
             tasks.append((judge_strangers, ('strangers', '%s %d' % (pair.set, i), '%s %s' % (other.set, other.target)), pair, other, points))
     tasks += [(judge_pose, pair, points, rectify) for pair in views for rectify in (False, True) if pair.same_light or not rectify]
     tasks += [(judge_images, pair, points, seed) for seed, pair in enumerate(image_pairs(options.data), 1) if pair.light]
-    write(options.out / 'uncertainty.csv', ['set', 'sequence', 'target', *map(str, HEAD)], rows_of(tasks))
     places = [folder for folders in view_folders(options.data).values() for folder in folders]
-    tasks = [(judge_locations, place, *search) for place in places for search in searches(place) if len(search[2]) > 1]
-    write(options.out / 'localization_uncertainty.csv', ['set', 'map', 'light', 'query', *map(str, HEAD)], rows_of(tasks))
+    tasks += [(judge_locations, place, *search) for place in places for search in searches(place) if len(search[2]) > 1]
+    write(options.out / 'uncertainty.csv', ['set', 'sequence', 'target', *map(str, HEAD)], rows_of(tasks))

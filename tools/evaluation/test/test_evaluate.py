@@ -89,6 +89,19 @@ class Data(Folders):
                          [(*pair[:3], pair.light) for pair in pairs])
         self.assertEqual([5, 0, 5, 5], [pair.H[0, 2] for pair in pairs])
 
+    def test_broken_files_are_named(self):
+        self.write_views('s/walk', {'a': 0}, {'a': np.full((20, 30), 9, np.uint8)})
+        self.assertEqual([], datasets.view_pairs(self.options.data))
+        for file, text, message in (('poses.txt', 'a 0 0 0 0 0 0 1\na 0 0 0 0 0 0 3\n', 'poses.txt, line 2'), ('poses.txt', 'a 0 0 0 0 0 0\n', 'poses.txt, line 1'),
+                                    ('cameras.txt', '', 'exactly one camera')):
+            self.write('s/walk/' + file, text)
+            with self.assertRaisesRegex(RuntimeError, message):
+                datasets.view_pairs(self.options.data)
+        self.write('set/seq/1.png', np.full((20, 30), 9, np.uint8))
+        self.write('set/seq/2.png', np.full((20, 30), 9, np.uint8))
+        self.write('set/seq/H_1_2', '1 2 3\n')
+        self.assertEqual([], datasets.image_pairs(self.options.data))
+
     def test_a_task_that_fails_is_left_out(self):
         self.assertEqual([], datasets.rows_of([(datasets.read_image, 'none.png')]))
 

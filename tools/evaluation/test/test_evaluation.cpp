@@ -264,32 +264,6 @@ TEST(Detectors, presets_are_described_with_their_own_scale)
     EXPECT_EQ(0, cv::norm(expected, found, cv::NORM_HAMMING));
 }
 
-TEST(DescribedImages, the_last_ones_are_kept)
-{
-    int detections = 0;
-    Detector detector;
-    detector.name = "counted";
-    detector.scaleFactor = 1;
-    detector.detect = [&](const cv::Mat&, const std::string&) {
-        detections++;
-        return Detection{{cv::KeyPoint(50, 50, 20)}, cv::Mat(), 0};
-    };
-    const cv::Mat image(100, 100, CV_8U, cv::Scalar(90));
-    DescribedImages described(2);
-    const auto detectionsAfter = [&](const char* file) {
-        EXPECT_EQ("IIB", described.get(detector, image, file)->back().name);
-        return detections;
-    };
-    EXPECT_EQ(1, detectionsAfter("a"));
-    EXPECT_EQ(1, detectionsAfter("a"));
-    EXPECT_EQ(2, detectionsAfter("b"));
-    EXPECT_EQ(3, detectionsAfter("c"));  // a is dropped from the cache
-    EXPECT_EQ(3, detectionsAfter("b"));
-    EXPECT_EQ(4, detectionsAfter("a"));
-    detector.name = "other";
-    EXPECT_EQ(5, detectionsAfter("a"));
-}
-
 TEST(Results, a_line_cut_short_is_left_out)
 {
     TestFolder folder;
