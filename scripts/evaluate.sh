@@ -1,7 +1,7 @@
 #!/bin/sh
 # Reproduces the paper's experiments on folders of image sequences and writes CSV files, means and one page.
 #   scripts/evaluate.sh [--document] [--contrib [--nonfree]] [--out FOLDER] [options of iib_evaluation] DATA...
-# Results go to results/ or --out; an interrupted run continues. --document puts their
+# Results go to results/ or --out; an interrupted run of iib_evaluation continues. --document puts their
 # summaries and the page into doc/results and updates the tables of the README; --contrib adds the descriptors of
 # opencv_contrib, whose source pip downloads (BEBLID, TEBLID, LATCH and more), --nonfree SURF, whose licence is not free.
 . "$(dirname "$0")/helpers/lib.sh"
@@ -19,18 +19,21 @@ done
 [ "$nonfree$contrib" != ON ] || fail "--nonfree needs --contrib"
 check_options "$root/tools/evaluation/main.cpp" "$@"
 [ $# != 0 ] || fail "a folder of DATA is needed (see --help)"
-out="$root/results"
-previous=""
+out="$root/results" tool="" package="" previous=""
 for argument in "$@"; do
-    [ "$previous" != --out ] || out="$argument"
-    case "$argument" in --out=*) out="${argument#--out=}" ;; esac
-    previous="$argument"
+    case "=$previous=$argument=" in
+    *=--out=*=) out="${argument#--out=}" ;;
+    *=--only=estimators= | *=--only=controls= | *=--only=alignment= | *=--only=uncertainty= | *=--only=views=) package=yes ;;
+    *=--only=*=) tool=yes ;;
+    esac
+    case "$argument" in --*=*) previous="" ;; *) previous="$argument" ;; esac
 done
+[ -n "$tool$package" ] || tool=yes package=yes
 pairs="$out/pairs"
 
-need $build_packages $pages_packages
+need $build_packages $pages_packages python3-opencv python3-venv python3-dev
 [ -z "$contrib" ] || contrib=$(contrib_argument)
-build_tools ${contrib:+"$contrib" -DIIB_CONTRIB_NONFREE=$nonfree} iib_evaluation
+[ -z "$tool" ] || build_tools ${contrib:+"$contrib" -DIIB_CONTRIB_NONFREE=$nonfree} iib_evaluation
 
 # An earlier run's rows are kept: $pairs/commits has the commits of all.
 commit=$(measured_commit)
@@ -44,8 +47,20 @@ done
 for selection in "$root"/doc/results/AdaBoost-*.json; do
     set -- "$@" --descriptor "$selection"
 done
-"$build/tools/evaluation/iib_evaluation" "$@" --out "$pairs"
-[ ! -e "$pairs/matched_points.csv" ] || "$python3" "$root/tools/evaluation/by_poselib.py" "$pairs"
+[ -z "$tool" ] || "$build/tools/evaluation/iib_evaluation" "$@" --out "$pairs"
+if [ -n "$package" ]; then
+    environment="$cache/evaluation-environment"
+    say "installing the Python package in $environment"
+    "$python3" -m venv --system-site-packages "$environment"
+    library=""  # of the tests, if they were built here: it saves minutes
+    ! cmake --build "$build" --target opencv_iib_static >/dev/null 2>&1 || library="$build/libopencv_iib_static.a"
+    if "$environment/bin/pip" install --quiet "--config-settings=cmake.define.IIB_STATIC_LIBRARY=$library" "$root"; then
+        "$environment/bin/pip" install --quiet poselib || say "skipped: PoseLib's poses (pip has no poselib here)"
+        "$environment/bin/python" -B "$root/tools/evaluation/evaluate.py" "$@" --out "$pairs"
+    else
+        say "skipped: poses, alignment, views and uncertainty (pip reaches no package index)"
+    fi
+fi
 [ -z "$document" ] || out="$root/doc/results"
 [ ! -e "$pairs/fixed_points.csv" ] || cp "$pairs/settings.txt" "$out"
 machine="$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1), $jobs threads"

@@ -20,7 +20,7 @@ if not MISSING:
     sys.path.insert(0, str(REPOSITORY / 'tools/localization'))
     import measure
     import setups
-    import uncertainty
+    import uncertainty  # of tools/evaluation, where measure looks, too
 
 
 @unittest.skipIf(MISSING, '%s is not installed' % ', '.join(MISSING))
@@ -47,12 +47,10 @@ class Measured(unittest.TestCase):
                 setups.main()
             self.assertEqual([line.split(',')[:6] for line in (out / 'setups.csv').read_text().splitlines()[1:2]],
                              [['1.4 m apart', '', 'night', '2', '2', '2']])
-            with mock.patch.object(sys, 'argv', ['uncertainty.py', str(out / 'sure.csv'), str(data)]), mock.patch.object(measure, 'POINTS', 400), \
-                    redirect_stderr(StringIO()):
-                uncertainty.main()
-            rows = [line.split(',') for line in (out / 'sure.csv').read_text().splitlines()[1:]]
-            self.assertEqual([row[1:6] for row in rows], [['map', 'night', f'{n}.png', f'{what} of Localizer', '1'] for n in range(2) for what in ('centre', 'rotation')])
-            self.assertTrue(all(row[-3] == '1' for row in rows), 'an error is outside the limit of 99 %')
+            with mock.patch.object(uncertainty, 'MAPPED', 400), redirect_stderr(StringIO()):
+                rows = uncertainty.judge_locations(data / 'night', *uncertainty.searches(data / 'night')[0])
+            self.assertEqual([row[1:5] for row in rows], [['night', f'{n}.png, map', f'{what} of Localizer', 1] for n in range(2) for what in ('centre', 'rotation')])
+            self.assertTrue(all(row[-3] == 1 for row in rows), 'an error is outside the limit of 99 %')
             results, world = json.loads((out / 'results.json').read_text()), (out / 'world.js').read_text()
             video = cv2.VideoCapture(str(out / 'night.webm'))
             self.assertGreater(np.std(video.read()[1]), 10)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs the Python package into clean virtual environments and runs python/tests there: with pip's newest OpenCV, and
+# Installs the Python package into clean virtual environments and runs python/tests and tools/evaluation/test there: with pip's newest OpenCV, and
 # with Debian's (python3-opencv). Without a package index for pip it skips with a message; with --servers it fails.
 #   scripts/helpers/python_test.sh [--servers] [LIBRARY]
 # --servers: also with PostgreSQL, and with Dask's workers in network namespaces (needs root).
@@ -25,7 +25,9 @@ check() {
     environment="$work/$1"
     shift
     "$environment/bin/pip" install --quiet "$@"
-    (cd "$root/python/tests" && "$environment/bin/python" -m unittest discover)
+    for tests in python/tests tools/evaluation/test; do
+        (cd "$root/$tests" && "$environment/bin/python" -B -m unittest discover)
+    done
 }
 
 skip() {

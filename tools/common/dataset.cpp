@@ -9,7 +9,6 @@
 #include <map>
 #include <set>
 
-#include "views.hpp"
 #include "opencv2/core/utils/filesystem.hpp"
 #include "opencv2/imgcodecs.hpp"
 
@@ -128,6 +127,12 @@ void visitFolders(const std::vector<std::string>& roots, const std::function<boo
             CV_Error(cv::Error::StsObjectNotFound, root + ": no such folder");
         search(fs::canonical(root), 4, visit);
     }
+}
+
+bool holdsViews(const std::string& folder)
+{
+    return fs::exists(fs::join(folder, "cameras.txt")) && fs::exists(fs::join(folder, "poses.txt")) &&
+           fs::isDirectory(fs::join(folder, "images"));
 }
 
 std::vector<ImagePair> findPairs(const std::vector<std::string>& roots)

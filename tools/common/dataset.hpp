@@ -48,10 +48,13 @@ std::string baseName(const std::string& path);
 //! The last component of a path, without its extension.
 std::string stem(const std::string& path);
 
+//! Whether a folder holds images from known places: `cameras.txt`, `poses.txt` and `images`, as tools/synthetic/views.py writes them.
+bool holdsViews(const std::string& folder);
+
 /** Finds all pairs (1, k) below the given folders, up to four levels deep, in the layouts
  - `1.png`, `H_1_k` (also .ppm, .pgm, .jpg, .tif: HPatches), with `depth/k.png`, `labels/k.png` if any;
  - `img1.ppm`, `H1to2p` (original Oxford).
-Sequences without any H file have a static camera. Folders of views.hpp are left out.
+Sequences without any H file have a static camera. Folders of views are left out.
 Pairs are ordered by path, numbers by value.
 @throws cv::Exception for a root that is not a folder, or two pairs of one name. */
 std::vector<ImagePair> findPairs(const std::vector<std::string>& roots);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 #include <cmath>
+#include <map>
 
 #include "detectors.hpp"
 #include "experiments.hpp"
@@ -41,31 +42,25 @@ std::string curve(const std::vector<cv::DMatch>& matches, const std::vector<bool
     return out;
 }
 
-void evaluatePair(const Options& options, const ImagePair& pair, const std::vector<Detector>& detectors,
-        DescribedImages& described, ResultTable& table)
+//! Appends rows of the reference's descriptors with those of a target.
+void comparePair(const Options& options, const ImagePair& pair, const LoadedPair& loaded,
+        const Detector& detector, const std::vector<Described>& reference, ResultTable& table)
 {
-    const LoadedPair loaded = loadPair(pair);
-    for (const Detector& detector : detectors)
+    const std::vector<Described> target = describeAll(detector, loaded.target, pair.targetFile);
+    // The last descriptor, IIB, keeps every point.
+    const int correspondences = countCorrespondences(
+            reference.back().keypoints, target.back().keypoints, loaded.homography, options.tolerance);
+    for (size_t i = 0; i < reference.size(); i++)
     {
-        const DescribedImages::Result ofReference =
-                                              described.get(detector, loaded.reference, pair.referenceFile),
-                                      ofTarget = described.get(detector, loaded.target, pair.targetFile);
-        const std::vector<Described>&reference = *ofReference, &target = *ofTarget;
-        // The last descriptor, IIB, keeps every point.
-        const int correspondences = countCorrespondences(
-                reference.back().keypoints, target.back().keypoints, loaded.homography, options.tolerance);
-        for (size_t i = 0; i < reference.size(); i++)
-        {
-            const Described &r = reference[i], &t = target[i];
-            const std::vector<cv::DMatch> matches = mutualMatches(r.descriptors, t.descriptors, r.norm);
-            std::vector<bool> correct;
-            for (const cv::DMatch& m : matches)
-                correct.push_back(correspond(r.keypoints[m.queryIdx], t.keypoints[m.trainIdx],
-                        loaded.homography, options.tolerance));
-            const Counts n = countsOf(correct, correspondences);
-            table.append(with(withCounts(with(pair.key(), detector.name, r.name, pair.kind, r.bytes), n),
-                    curve(matches, correct, unrelated(r))));
-        }
+        const Described &r = reference[i], &t = target[i];
+        const std::vector<cv::DMatch> matches = mutualMatches(r.descriptors, t.descriptors, r.norm);
+        std::vector<bool> correct;
+        for (const cv::DMatch& m : matches)
+            correct.push_back(correspond(
+                    r.keypoints[m.queryIdx], t.keypoints[m.trainIdx], loaded.homography, options.tolerance));
+        const Counts n = countsOf(correct, correspondences);
+        table.append(with(withCounts(with(pair.key(), detector.name, r.name, pair.kind, r.bytes), n),
+                curve(matches, correct, unrelated(r))));
     }
 }
 
@@ -78,19 +73,30 @@ int detectedPoints(const Options& options, const std::vector<ImagePair>& pairs)
             {"set", "sequence", "target", "detector", "descriptor", "kind", "bytes", "correct", "putative",
                     "correspondences", "precision", "recall", "curve"},
             5);
-    DescribedImages described;
+    std::map<std::string, std::vector<ImagePair>> sequences;  // by the reference, which is described once
     for (const ImagePair& pair : pairs)
-    {
-        std::vector<Detector> missing;
-        for (const Detector& d : all)
-            if (pair.kind == "light" && d.knows(pair.referenceFile) && d.knows(pair.targetFile) &&
-                    !experiment.table.has(with(pair.key(), d.name, "IIB")))  // written last
-                missing.push_back(d);
-        if (!missing.empty())
-            experiment.plan({}, pair.name(), [&, pair, missing] {
-                evaluatePair(options, pair, missing, described, experiment.table);
-            });
-    }
+        if (pair.kind == "light")
+            sequences[pair.referenceFile].push_back(pair);
+    const auto isMissing = [&](const ImagePair& pair, const Detector& d) {
+        return d.knows(pair.referenceFile) && d.knows(pair.targetFile) &&
+               !experiment.table.has(with(pair.key(), d.name, "IIB"));  // written last
+    };
+    for (const auto& sequence : sequences)
+        for (const Detector& detector : all)
+        {
+            std::vector<ImagePair> missing;
+            for (const ImagePair& pair : sequence.second)
+                if (isMissing(pair, detector))
+                    missing.push_back(pair);
+            const auto run = [&, missing, detector] {
+                const std::vector<Described> reference =
+                        describeAll(detector, loadPair(missing[0]).reference, missing[0].referenceFile);
+                for (const ImagePair& pair : missing)
+                    comparePair(options, pair, loadPair(pair), detector, reference, experiment.table);
+            };
+            if (!missing.empty())
+                experiment.plan({}, missing[0].name() + " and others, " + detector.name, run);
+        }
     return experiment.run();
 }
 

@@ -41,7 +41,7 @@ Detector classic(const std::string& name, const std::string& descriptorName,
         d.norm = own->defaultNorm();
         return d;
     };
-    return {name, descriptorName, cv::iib::IIB::scaleFactorFor(name), detect, {}, "", {}};
+    return {name, descriptorName, cv::iib::IIB::scaleFactorFor(name), detect, {}, ""};
 }
 
 //! Detects on the locally normalized image and describes the plain image.
@@ -62,7 +62,7 @@ Detector hessian(const std::string& name, int count)
         cv::iib::HessianDetector::create(count)->detect(image, d.keypoints);
         return d;
     };
-    return {name, "", cv::iib::IIB::scaleFactorFor("Hessian"), detect, {}, "", {}};
+    return {name, "", cv::iib::IIB::scaleFactorFor("Hessian"), detect, {}, ""};
 }
 
 //! The list of an image's keypoints below a folder: `<set>/<sequence>/<image>.csv`.
@@ -92,7 +92,7 @@ Detector fromFiles(const std::string& folder, int count)
     };
     const std::string trimmed = folder.substr(0, folder.find_last_not_of('/') + 1),
                       name = trimmed.substr(trimmed.find_last_of('/') + 1);
-    return {name, name, 1.f, detect, {}, trimmed, {}};
+    return {name, name, 1.f, detect, {}, trimmed};
 }
 
 //! Other descriptors of ORB's points; those with a fixed patch have about the size of ORB's.
@@ -180,19 +180,12 @@ bool Detector::knows(const std::string& imageFile) const
 std::vector<Described> describeAll(const Detector& detector, const cv::Mat& image, const std::string& file)
 {
     const Detection detection = detector.detect(image, file);
-    const auto wanted = [&](const std::string& name) {
-        return detector.only.empty() ||
-               std::find(detector.only.begin(), detector.only.end(), name) != detector.only.end();
-    };
     std::vector<Described> all;
-    if (!detector.descriptor.empty() && wanted(detector.descriptor) &&
-            (detector.folder.empty() || !detection.descriptors.empty()))
+    if (!detector.descriptor.empty() && (detector.folder.empty() || !detection.descriptors.empty()))
         all.push_back({detector.descriptor, detection.keypoints, detection.descriptors, detection.norm,
                 int(detection.descriptors.cols * detection.descriptors.elemSize())});
     for (const Configuration& c : describersOf(detector))
     {
-        if (!wanted(c.name))
-            continue;
         const Feature feature = c.create();
         const cv::Ptr<cv::iib::IIB> iib = feature.dynamicCast<cv::iib::IIB>();
         if (iib)
@@ -204,26 +197,6 @@ std::vector<Described> describeAll(const Detector& detector, const cv::Mat& imag
         all.push_back(d);
     }
     return all;
-}
-
-DescribedImages::Result DescribedImages::get(
-        const Detector& detector, const cv::Mat& image, const std::string& file)
-{
-    const Key key(detector.name, file);
-    std::unique_lock<std::mutex> lock(mutex_);
-    if (known_.count(key))
-        return known_[key];
-    lock.unlock();
-    const Result result = std::make_shared<std::vector<Described>>(describeAll(detector, image, file));
-    lock.lock();
-    if (known_.emplace(key, result).second)
-        order_.push_back(key);
-    if (order_.size() > most_)
-    {
-        known_.erase(order_.front());
-        order_.pop_front();
-    }
-    return result;
 }
 
 }  // namespace iib_tools

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <deque>
 #include <functional>
-#include <map>
-#include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -32,7 +28,6 @@ struct Detector
     std::function<Detection(const cv::Mat&, const std::string&)> detect;
     std::vector<Configuration> others;  //!< other descriptors of the same points
     std::string folder;                 //!< of lists of keypoints, one per image; empty: detects in the image
-    std::vector<std::string> only;      //!< names of the descriptors of its points; empty: all
 
     //! Whether it has keypoints of an image.
     bool knows(const std::string& imageFile) const;
@@ -58,29 +53,7 @@ struct Described
 };
 
 /** Describes a detector's points in an image, by the same descriptors in the same order for every image: its own, Detector::others,
-IIB's presets, and last IIB's default. Detector::only limits them. */
+IIB's presets, and last IIB's default. */
 std::vector<Described> describeAll(const Detector& detector, const cv::Mat& image, const std::string& file);
-
-/** Caches the results of describeAll for the last images. An image occurs in several pairs, and describing takes most of the time.
-Thread-safe. */
-class DescribedImages
-{
-public:
-    typedef std::shared_ptr<const std::vector<Described>> Result;
-
-    //! @param most number of cached results of one image and detector; each has about a megabyte
-    explicit DescribedImages(size_t most = 200) : most_(most) {}
-
-    //! A changed image needs another file name. Two threads may describe the same image at once.
-    Result get(const Detector& detector, const cv::Mat& image, const std::string& file);
-
-private:
-    typedef std::pair<std::string, std::string> Key;  // detector, file
-
-    size_t most_;
-    std::map<Key, Result> known_;
-    std::deque<Key> order_;  // oldest first
-    std::mutex mutex_;
-};
 
 }  // namespace iib_tools

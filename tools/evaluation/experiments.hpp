@@ -23,8 +23,7 @@ struct Options
 
 //! An experiment of README.md. Adds the missing rows of `<out>/<name>.csv`. @return the number of tasks that failed
 typedef int ExperimentFunction(const Options& options, const std::vector<ImagePair>& pairs);
-ExperimentFunction fixedPoints, detectedPoints, estimators, controls, alignment, matching, robustness,
-        comparison, uncertainty, warpedViews;
+ExperimentFunction fixedPoints, detectedPoints, matching, robustness, comparison;
 
 /** Runs the experiments. @return how many tasks were skipped.
 @throws cv::Exception if there is nothing to evaluate, no image pair can be read, an experiment is unknown, or the folder

@@ -13,8 +13,8 @@ const char ABOUT[] = "The paper's experiments, and more, on image sequences: iib
 
 const char KEYS[] =
         "{out         |<none>|folder of the results; a run that was interrupted goes on there}"
-        "{only        |<none>|fixed_points, detected_points, estimators, controls, alignment, matching, "
-        "robustness, comparison, uncertainty or views; may be repeated}"
+        "{only        |<none>|fixed_points, detected_points, matching, robustness or comparison; by "
+        "evaluate.py: estimators, controls, alignment, uncertainty or views; may be repeated}"
         "{compare     |<none>|image; given twice for each pair of which the matches of IIB and others are "
         "listed}"
         "{points      |1000  |keypoints an image}"

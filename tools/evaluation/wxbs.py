@@ -14,40 +14,10 @@ import sys
 
 import cv2
 import numpy as np
+from datasets import read_image
+from methods import WAYS
 
 POINTS, LIMITS = 4000, range(20)
-
-
-def by_views(images):
-    import opencv_iib
-    found = opencv_iib.matchViews(*images, POINTS)
-    return found.points1, found.points2
-
-
-def by_chain(images):
-    import opencv_iib
-    features = [opencv_iib.detect_and_describe(image, POINTS) for image in images]
-    pairs = opencv_iib.match(features[0].codes, features[1].codes).pairs
-    rows = [np.column_stack(each[:2]) for each in features]
-    moved = opencv_iib.propagateMatches(images[0], rows[0], images[1], rows[1], pairs)
-    return moved.points1, moved.points2
-
-
-def by_feature(create, norm, ratio):
-    """A method of OpenCV's: mutual nearest neighbours under a ratio."""
-    def match(images):
-        (points1, codes1), (points2, codes2) = (create(POINTS).detectAndCompute(image, None) for image in images)
-        if codes1 is None or codes2 is None or len(codes2) < 2:
-            return np.empty((2, 0, 2))
-        back = cv2.BFMatcher(norm).match(codes2, codes1)
-        kept = [first for first, second in cv2.BFMatcher(norm).knnMatch(codes1, codes2, 2)
-                if first.distance < ratio * second.distance and back[first.trainIdx].trainIdx == first.queryIdx]
-        return np.array([[points1[m.queryIdx].pt for m in kept], [points2[m.trainIdx].pt for m in kept]]).reshape(2, -1, 2)
-    return match
-
-
-METHODS = {'matchViews': by_views, 'upright chain': by_chain, 'SIFT': by_feature(cv2.SIFT_create, cv2.NORM_L2, .8),
-           'ORB': by_feature(cv2.ORB_create, cv2.NORM_HAMMING, .9)}
 
 
 def shares(points1, points2, truth):
@@ -66,14 +36,14 @@ def main():
         sys.exit(__doc__)
     with open(sys.argv[1], 'w', encoding='utf-8', newline='') as file:
         table = csv.writer(file, lineterminator='\n')
-        table.writerow(['set', 'sequence', 'method', 'points', 'matches', 'within_10', 'share'])
+        table.writerow(['set', 'sequence', 'method', 'points', 'found', 'matches', 'within_10', 'share'])
         for marked in sorted(pathlib.Path(sys.argv[2]).glob('*/*/corrs.txt')):
             truth = np.loadtxt(marked, ndmin=2)
-            images = [cv2.imread(str(next(marked.parent.glob(name + '.*'))), cv2.IMREAD_GRAYSCALE) for name in ('01', '02')]
-            for name, match in METHODS.items():
-                points = [np.asarray(each, float) for each in match(images)]
+            images = [read_image(next(marked.parent.glob(name + '.*'))) for name in ('01', '02')]
+            for name in ('matchViews', 'upright chain', 'SIFT', 'ORB'):
+                found, points = WAYS[name](images, POINTS)
                 within = ('%.6g' % value for value in shares(*points, truth))
-                table.writerow([marked.parent.parent.name, marked.parent.name, name, POINTS, len(points[0]), *within])
+                table.writerow([marked.parent.parent.name, marked.parent.name, name, POINTS, int(found), len(points[0]), *within])
             file.flush()
 
 

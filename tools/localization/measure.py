@@ -26,9 +26,11 @@ import numpy as np
 import pycolmap
 
 import opencv_iib
-from opencv_iib import _core
-from opencv_iib.localization import Camera, Localizer, build, update
+from opencv_iib.localization import Localizer, build, update
 from sift import Location, Sift
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / 'evaluation'))
+from datasets import pose_of, read_place, write_model  # noqa: E402
 
 LIGHTS = ('night', 'dusk', 'winter', 'overcast', 'fog', 'morning', 'wet')
 POINTS = 2000  # an image
@@ -36,33 +38,6 @@ FRAME, VIDEO, RATE = (400, 300), (640, 240), 4  # pixels of an image in a pictur
 UNKNOWN = 200  # number of photographs of other places
 DRAWN = 6000  # approximate number of points of the map that are drawn
 SEASONS = ('morning', 'overcast', 'dusk')  # updates, in the order of a day
-
-
-def pose_of(numbers):
-    """Camera from world, 4 x 4, by a centre and a quaternion x y z w from the camera to the world."""
-    numbers = np.array(numbers, float)
-    sine = np.linalg.norm(numbers[3:6])
-    turn = cv2.Rodrigues(numbers[3:6] * (2 * np.arctan2(sine, numbers[6]) / sine if sine else 2))[0].T
-    pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = turn, -turn @ numbers[:3]
-    return pose
-
-
-def read_place(folder, step=1):
-    """The camera, and 4 x 4 poses (camera from world) of every step-th existing image, by file name."""
-    lines = [line.split() for line in (folder / 'cameras.txt').read_text().splitlines() if not line.startswith('#')]
-    poses = {}
-    for line in (folder / 'poses.txt').read_text().splitlines():
-        stem, *numbers = line.split()
-        for path in (folder / 'images').glob(stem + '.*') if stem != '#' else ():
-            poses[path.name] = pose_of(numbers)
-    return Camera.parse(','.join(lines[0][1:])), dict(sorted(poses.items())[::step])
-
-
-def write_model(folder, camera, poses):
-    """Writes a COLMAP model without points."""
-    folder.mkdir(parents=True, exist_ok=True)
-    _core.writeModel(folder, [_core.PosedImage(name, camera, pose, np.empty((0, 2))) for name, pose in poses.items()])
 
 
 def chain(folder, work, step=1):

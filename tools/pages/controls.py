@@ -8,6 +8,7 @@ import math
 import pathlib
 
 import summaries
+from summaries import pair_of
 
 RESULTS = pathlib.Path(__file__).resolve().parents[2] / 'doc/results'
 CHAIN, OTHER, ROOT = ('Hessian', 'IIB UNIVERSAL'), ('SIFT normalized', 'SIFT'), ('SIFT normalized', 'RootSIFT')
@@ -75,10 +76,6 @@ def summarize(source, target):
                               '%.4g' % summaries.mean(sum(less, [])), *('%.4g' % v for v in summaries.interval(less)), len(poses), sum(error > WRONG for error in poses)])
     summaries.write(target, ['place', 'detector', 'descriptor', 'noise', 'ratio', 'used', 'pairs', 'places', 'at_10', 'at_5', 'at_2', 'low', 'high', 'less', 'less_low', 'less_high',
                              'poses', 'wrong'], sorted(lines))
-
-
-def pair_of(row):
-    return row['set'], row['sequence'], row['target']
 
 
 BINS = 25, 50, 100  # right neighbours of normalized SIFT

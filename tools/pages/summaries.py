@@ -137,7 +137,7 @@ PLANS = {
     'robustness.csv': (lambda row: ['turned'] * (row['set'] not in TRAINED_ON), ('kind', 'configuration', 'target'),
                        columns('precision', 'recall')),
     'alignment.csv': (alignment_place, ('model',), {'found': column('found'), 'squares': column('squares'), 'within_1': within(1), 'within_3': within(3)}),
-    'wxbs.csv': (lambda row: [row['set'], 'all'], ('method', 'points'), columns('matches', 'within_10', 'share')),
+    'wxbs.csv': (lambda row: [row['set'], 'all'], ('method', 'points'), columns('found', 'matches', 'within_10', 'share')),
     'estimators.csv': (light_place, ('detector', 'descriptor', 'points', 'estimator'),
                        {'inliers': column('inliers'), 'at_10': pose_area(10), 'at_2': pose_area(2), 'at_20': pose_area(20), 'at_5': pose_area(5)}),
 }
@@ -181,16 +181,17 @@ def write(file, heads, rows):
         csv.writer(opened, lineterminator='\n').writerows([heads, *rows])
 
 
-def pair_of(row):
-    return tuple(row[name] for name in ('set', 'sequence', 'target', 'detector', 'descriptor', 'points'))
+def pair_of(row, *more):
+    return tuple(row[name] for name in ('set', 'sequence', 'target', *more))
 
 
 def summarize(source, target, groups_of, keys, values):
     """Writes means of each group; of estimators, also of the pairs that findRelativePose answers."""
     groups, every_row = collections.defaultdict(lambda: collections.defaultdict(list)), read(source)
-    refused = {pair_of(row) for row in every_row if row.get('estimator') == 'findRelativePose' and row['error'] == 'inf'}
+    method = 'detector', 'descriptor', 'points'
+    refused = {pair_of(row, *method) for row in every_row if row.get('estimator') == 'findRelativePose' and row['error'] == 'inf'}
     for row in every_row:
-        for place in groups_of(row) + [place + ', answered' for place in groups_of(row) if refused and pair_of(row) not in refused]:
+        for place in groups_of(row) + [place + ', answered' for place in groups_of(row) if refused and pair_of(row, *method) not in refused]:
             groups[(place, *(row[key] for key in keys))][scene(row)].append([value(row) for value in values.values()])
     lines = []
     for key, scenes in sorted(groups.items()):
@@ -226,7 +227,7 @@ def summarize_gains(source, target):
     counts = collections.defaultdict(dict)
     for row in read(source):
         for place in {'natural', 'light'}.intersection(places(row)):
-            counts[place, row['detector'], row['descriptor']][row['set'], row['sequence'], row['target']] = int(row['correct'])
+            counts[place, row['detector'], row['descriptor']][pair_of(row)] = int(row['correct'])
     lines = []
     for place, detector in sorted(key[:2] for key in counts if key[1] == key[2]):
         own, ours, scenes = counts[place, detector, detector], counts[place, detector, 'IIB'], collections.defaultdict(list)
@@ -302,9 +303,9 @@ def summarize_uncertainty(source, target):
     """For each quantity and kind of data: number of pairs or images, those with a result, errors, the share of errors within the limit of each
     level, the geometric mean of the reported standard deviations, and the mean logarithmic score."""
     found = {}
-    for row in read(source) + read(source.with_name('localization_uncertainty.csv')):
+    for row in read(source):
         count = int(row['count'])
-        key = row['quantity'], data_of(row['set'], row.get('light') or row['sequence'])
+        key = row['quantity'], data_of(row['set'], row['sequence'])
         found.setdefault(key, []).append([1, count > 0, count, *(int(row[level]) for level in LEVELS), float(row['log_deviation']), float(row['score'])])
     lines = []
     for key, counts in sorted(found.items(), key=lambda item: ('Localizer' in item[0][0], item[0])):

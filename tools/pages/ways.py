@@ -14,17 +14,14 @@ def summarize(source, target):
     that of most."""
     rows, score = [row for row in summaries.read(source) if summaries.light_place(row) == ['other light']], summaries.pose_area(5)
     ways, lines = summaries.group(rows, 'detector', 'points', 'matches', 'estimator'), []
-
-    def pair(row):
-        return row['set'], row['sequence'], row['target']
-    chain = {(key[3], int(key[1])): {pair(row): score(row) for row in of} for key, of in ways.items() if key[0] == CHAIN}
+    chain = {(key[3], int(key[1])): {summaries.pair_of(row): score(row) for row in of} for key, of in ways.items() if key[0] == CHAIN}
     for key, of in sorted(ways.items()):
         places = summaries.group(of, 'set').values()
         means = (summaries.shown([value(row) for row in of]) for value in (summaries.column('milliseconds'), *map(summaries.pose_area, (10, 2, 5))))
         lines.append([*key, len(of), *means, *('%.4g' % end for end in summaries.interval([[score(row) for row in members] for members in places]))])
         counts = [points for estimator, points in chain if estimator == key[3]]
         for points in (min(counts, key=lambda count: abs(count - int(key[1]))), max(counts)):
-            gains = [[score(row) - chain[key[3], points][pair(row)] for row in members] for members in places]
+            gains = [[score(row) - chain[key[3], points][summaries.pair_of(row)] for row in members] for members in places]
             lines[-1] += ['%.4g' % number for number in (summaries.mean(sum(gains, [])), *summaries.interval(gains))]
     gained = [name + end for name in ('gain', 'over_most') for end in ('', '_low', '_high')]
     summaries.write(target, ['detector', 'points', 'matches', 'estimator', 'pairs', 'milliseconds', 'at_10', 'at_2', 'at_5', 'low', 'high', *gained], lines)

@@ -112,8 +112,8 @@ std::string presetsHeader(const std::vector<NamedExtractor>& presets, const std:
            "// Generated, do not edit: "
         << command << "\n// Seed " << seed << ", trained on:\n";
     std::set<std::string> names = sceneNames(images.pairs);
-    for (const ViewPair& walk : images.walks)
-        names.insert(walk.set + ", where points are detected");
+    for (const WalkPair& walk : images.walks)
+        names.insert(walk.scene + ", where points are detected");
     for (const std::string& name : names)
         out << "//   " << name << "\n";
     out << "// One base-32 digit, the bit mask, per level, row, column and channel; w, x, y, z are runs of "

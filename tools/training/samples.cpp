@@ -52,9 +52,9 @@ void mirror(Sample& sample)
     pair.homography = flipTarget * pair.homography * flipReference;
 }
 
-Sample drawWalk(const std::vector<ViewPair>& scene, cv::RNG& rng)
+Sample drawWalk(const std::vector<WalkPair>& scene, cv::RNG& rng)
 {
-    const ViewPair& drawn = scene[size_t(rng.uniform(0, int(scene.size())))];
+    const WalkPair& drawn = scene[size_t(rng.uniform(0, int(scene.size())))];
     Sample sample;
     sample.pair.reference = readImage(drawn.referenceFile);
     sample.pair.target = readImage(drawn.targetFile);
@@ -121,10 +121,10 @@ std::vector<DescribedPair> describeForTraining(const TrainingSet& images,
     std::map<std::string, std::vector<ImagePair>> scenes;
     for (const ImagePair& pair : images.pairs)
         scenes[sceneOf(pair)].push_back(pair);
-    std::map<std::string, std::vector<ViewPair>> walks;
+    std::map<std::string, std::vector<WalkPair>> walks;
     if (detected > 0)
-        for (const ViewPair& pair : images.walks)
-            walks[pair.set].push_back(pair);
+        for (const WalkPair& pair : images.walks)
+            walks[pair.scene].push_back(pair);
 
     cv::RNG rng(seed);
     std::vector<DescribedPair> described;

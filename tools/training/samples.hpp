@@ -41,7 +41,7 @@ DescribedPair describeDetected(
 struct TrainingSet
 {
     std::vector<ImagePair> pairs;
-    std::vector<ViewPair> walks;  //!< used with detected points only
+    std::vector<WalkPair> walks;  //!< used with detected points only
 };
 
 //! Random warps of training pairs about the target's centre, drawn independently for each pair.

@@ -4,14 +4,23 @@
 #include <string>
 #include <vector>
 
-#include "common/views.hpp"
-#include "opencv2/core/types.hpp"
+#include "opencv2/core.hpp"
+#include "opencv2/core/affine.hpp"
 
 namespace iib_tools {
 
-/** Finds ordered pairs of pictures with depth images, from two poses of a rendered walk and under any two lights: folders of one
-place (tools/synthetic/views.py --walk). Pictures are at most `farthest` apart among numbers 0, 1, 4, 5, 8, 9, ... */
-std::vector<ViewPair> findWalkPairs(const std::vector<std::string>& roots, int farthest);
+//! Two pictures with depth of a rendered walk (tools/synthetic/views.py --walk), from two poses and under any two lights.
+struct WalkPair
+{
+    std::string scene;                      //!< "set/scene", without the light
+    std::string referenceFile, targetFile;  //!< `images/NAME.png`; their depth is in `depth/NAME.png`
+    cv::Matx33d camera;                     //!< pixels
+    cv::Affine3d motion;                    //!< from the reference's axes to the target's, metres
+};
+
+/** Ordered pairs of pictures in folders of one scene, at most `farthest` apart among numbers 0, 1, 4, 5, 8, 9, ...
+@throws cv::Exception for a broken camera or pose. */
+std::vector<WalkPair> findWalkPairs(const std::vector<std::string>& roots, int farthest);
 
 //! The depth maps and relative pose of two pictures of a walk, which map points from one to the other.
 struct Relief
@@ -27,6 +36,6 @@ struct Relief
 };
 
 //! @throws cv::Exception for a file that is not a depth map.
-Relief loadRelief(const ViewPair& pair);
+Relief loadRelief(const WalkPair& pair);
 
 }  // namespace iib_tools

@@ -98,38 +98,14 @@ TEST_F(EvaluationTest, whole_run_and_its_repetition)
         cv::utils::fs::remove_all(kept);
     }
     options.compare = {folder.path("data/set/still/1.png"), folder.path("data/set/still/2.png")};
-    folder.makeFolder("data/walks/walk/images");
-    folder.write("data/walks/walk/cameras.txt", "1 PINHOLE 320 240 300 300 160 120\n");
-    folder.write("data/walks/walk/poses.txt", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
-    for (const char* image : {"1.png", "2.png"})
-        cv::imwrite(folder.path("data/walks/walk/images/") + image,
-                cv::imread(folder.path("data/set/v_shift/") + image));
     EXPECT_EQ(0, evaluate(options));
     EXPECT_GT(recallOf("still", "IIB"), 0.9);
     EXPECT_GT(recallOf("v_shift", "IIB"), 0.9);
     EXPECT_GT(recallOf("still", "IIB"), recallOf("still", "IIB g2"));
     EXPECT_GT(recallOf("still", "IIB +depth"), 0.9);
     EXPECT_GT(recallOf("still", "IIB +texture"), 0.9);
-    const std::string aligned = contents(options.out + "/alignment.csv"),
-                      still = "set,still,2,moved by a HOMOGRAPHY,HOMOGRAPHY,1,";
-    ASSERT_NE(std::string::npos, aligned.find(still));
-    EXPECT_LT(
-            std::atof(aligned.substr(aligned.find(',', aligned.find(still) + still.size()) + 1).c_str()), 1);
-
-    for (const char* row : {"moved by a TRANSLATION,TRANSLATION,1,", "moved by a SIMILARITY,AFFINE,1,",
-                 "moved by a HOMOGRAPHY,TRANSLATION,0,", "with noise,SIMILARITY,1,"})
-        EXPECT_NE(std::string::npos, aligned.find(std::string("set,still,2,") + row)) << row;
-
-    const std::string views = contents(options.out + "/views.csv");
-    for (const char* change : {"rotation,90", "rotation,180", "zoom,0.8", "tilt,1.5"})
-        EXPECT_GT(valueAfter(views, std::string("set,still,") + change + ",matchViews,1,"), 100) << change;
-    EXPECT_GT(valueAfter(views, "set,still,zoom,1,upright chain,1,"), 100);
-    EXPECT_LT(valueAfter(views, "set,still,rotation,90,upright chain,1,"), 10);
-    EXPECT_GT(valueAfter(views, "set,still,rotation,180,AffineFeature,1,"), 100);
-    EXPECT_EQ(-1, valueAfter(views, "set,still,rotation,30,AffineFeature,1,"));
-
-    const std::vector<std::string> tables = {"fixed_points", "detected_points", "estimators", "alignment",
-            "matching", "robustness", "views", "comparison"};
+    const std::vector<std::string> tables = {
+            "fixed_points", "detected_points", "matching", "robustness", "comparison"};
     std::vector<std::string> first;
     for (const std::string& name : tables)
         first.push_back(contents(options.out + "/" + name + ".csv"));
@@ -242,27 +218,6 @@ TEST_F(EvaluationTest, keypoints_of_files_are_described)
     const std::string without = contents(options.out + "/detected_points.csv");
     EXPECT_EQ(std::string::npos, without.find("network,network"));
     EXPECT_NE(std::string::npos, without.find("network,IIB,light,170,"));
-}
-
-TEST_F(EvaluationTest, images_of_different_sets_are_matched)
-{
-    cv::RNG rng(5);
-    for (const std::string set : {"one", "two"})
-    {
-        folder.makeFolder("unrelated/" + set + "/noise");
-        cv::Mat noise(90, 120, CV_8U);
-        rng.fill(noise, cv::RNG::UNIFORM, 0, 256);
-        cv::GaussianBlur(noise, noise, cv::Size(), 2);
-        cv::normalize(noise, noise, 0, 255, cv::NORM_MINMAX);
-        for (const char* name : {"1", "2"})
-            cv::imwrite(folder.path("unrelated/" + set + "/noise/") + name + ".png", noise);
-    }
-    options.roots = {folder.path("unrelated")};
-    options.experiments = {"views"};
-    EXPECT_EQ(0, evaluate(options));
-    const std::string table = contents(options.out + "/views.csv");
-    for (const char* pair : {"one,noise/2 and two/noise/2", "two,noise/2 and one/noise/2"})
-        EXPECT_EQ(0, valueAfter(table, std::string(pair) + ",unrelated,,matchViews,")) << pair;
 }
 
 TEST_F(EvaluationTest, invalid_options_are_refused)

@@ -21,7 +21,7 @@ subprocess.run([sys.executable, "-B", tools / "pages.py", "--results", page], ch
 with open(os.path.join(page, "index.html")) as file:
     text = file.read()
 assert re.search("<td>IIB</td>.*<td[^>]*>%.3f " % (sum(recalls) / len(recalls)), text), recalls
-for section in ("all", "detectors", "curves", "pictures", "moved", "poses", "run"):
+for section in ("all", "detectors", "curves", "pictures", "moved", "run"):
     assert 'id="%s"' % section in text, section
 for name in ("IIB", "IIB BALANCED", "ORB", "SIFT", "AKAZE-486"):
     assert re.search(r'<td>%s( <span class="tag">learned</span>)?</td><td>\d+</td><td data-value="[\d.]+">' % name, text), name

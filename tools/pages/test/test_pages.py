@@ -140,10 +140,8 @@ class Figures(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             source, target = pathlib.Path(folder, 'uncertainty.csv'), pathlib.Path(folder, 'out.csv')
             source.write_text('set,sequence,quantity,count,0.1,0.25,0.5,0.75,0.9,0.95,0.99,log_deviation,score\nstrecha,a,points,4,0,0,1,2,3,4,4,0,8\n'
-                              'strecha,b,points,4,0,0,1,2,3,4,4,0,0\nstrecha,a,points,0,0,0,0,0,0,0,0,0,0\nfacade_31,dusk,points,0,0,0,0,0,0,0,0,0,0\n')
-            pathlib.Path(folder, 'localization_uncertainty.csv').write_text(
-                'set,light,quantity,count,0.1,0.25,0.5,0.75,0.9,0.95,0.99,log_deviation,score\nroom_31,night,centre of Localizer,1,0,0,1,1,1,1,1,0,1\n'
-                'room_31,night,centre of Localizer,0,0,0,0,0,0,0,0,0,0\n')
+                              'strecha,b,points,4,0,0,1,2,3,4,4,0,0\nstrecha,a,points,0,0,0,0,0,0,0,0,0,0\nfacade_31,dusk,points,0,0,0,0,0,0,0,0,0,0\n'
+                              'room_31,night,centre of Localizer,1,0,0,1,1,1,1,1,0,1\nroom_31,night,centre of Localizer,0,0,0,0,0,0,0,0,0,0\n')
             summaries.summarize_uncertainty(source, target)
             self.assertEqual([line.split(',')[-12:] for line in target.read_text().splitlines()[1:]], [
                 ['3', '2', '8', '0', '0', '0.25', '0.5', '0.75', '1', '1', '1', '1'], ['1', '0', '0'] + 9 * [''],

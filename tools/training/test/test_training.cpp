@@ -263,15 +263,20 @@ TEST(Training_Walks, pairs_of_places_under_all_lights)
         folder.write(light + "/poses.txt", poses);
     }
     // 0, 1, 4 and 5 without the pair 0 and 5, which is too far apart; both directions, four pairs of lights
-    const std::vector<ViewPair> pairs = findWalkPairs({folder.path("")}, 4);
+    const std::vector<WalkPair> pairs = findWalkPairs({folder.path("")}, 4);
     ASSERT_EQ(5u * 2 * 4, pairs.size());
-    for (const ViewPair& pair : pairs)
+    for (const WalkPair& pair : pairs)
     {
-        EXPECT_EQ("path/hut_0", pair.set);
+        EXPECT_EQ("path/hut_0", pair.scene);
         EXPECT_GE(cv::norm(loadRelief(pair).translation), 24.9) << "steps of 4 mm";
         EXPECT_LE(cv::norm(loadRelief(pair).translation), 100.1);
     }
     EXPECT_GT(loadRelief(pairs[0]).project(cv::KeyPoint(60.f, 40.f, 8.f)).size, 0);
+    for (const char* broken : {"poses.txt", "cameras.txt"})
+    {
+        folder.write(std::string("path/hut_0/night/") + broken, "0 0 0\n");
+        EXPECT_THROW(findWalkPairs({folder.path("")}, 4), cv::Exception) << broken;
+    }
 }
 
 }  // namespace
