@@ -105,7 +105,7 @@ void checkVerdict(ByteSource& in, const Mat& first, const Mat& second, bool vali
     FUZZ_CHECK(thrown == !valid && !std::isnan(alarms));
 }
 
-void checkTransform(ByteSource& in, const Mat& first, const Mat& second)
+void checkTransform(ByteSource& in, const Points& first, const Points& second)
 {
     const PlanarProblem problem(first, second, in.between(0, 3));
     const Fit<PlanarProblem> fit = robustFit(problem);
@@ -128,5 +128,6 @@ FUZZ_TARGET
     checkPose(in, first, second, valid);
     checkVerdict(in, first, second, valid);
     if (valid)
-        checkTransform(in, first, second);
+        checkTransform(
+                in, pointsOf(first, "checkTransform", "first"), pointsOf(second, "checkTransform", "second"));
 }
