@@ -11,7 +11,7 @@ from opencv_iib import _core
 from opencv_iib._arguments import Path, integer, integers
 from opencv_iib._arrays import ArrayOrArrays, as_arrays, as_codes
 from opencv_iib._copies import copied
-from opencv_iib.matcher import AT_ONCE
+from opencv_iib.matcher import AT_ONCE, check_padding
 
 
 @copied
@@ -58,6 +58,7 @@ class MappedIndex(_core.MappedIndex):
         :return: rows (int64) and distances (int32), queries x k, -1 where there are fewer.
         :raises opencv_iib.error: also for a k of more than there are codes that would fill the memory."""
         queries, k, where = as_codes(queryDescriptors, 'queries'), integer(k, 'k'), -1 if segment is None else integer(segment, 'segment')
+        check_padding(len(queries), k, self.rows)
         parts = [self._search(queries[first:first + AT_ONCE], k, where) for first in range(0, max(1, len(queries)), AT_ONCE)]
         rows, distances = (np.concatenate(arrays).reshape(-1, k) for arrays in zip(*parts))
         return rows, distances

@@ -1,7 +1,7 @@
 """HierarchicalMatcher, the class of cv2.iib, for arrays."""
 from __future__ import annotations
 
-from typing import Any, Iterable, Iterator, Optional, Sequence
+from typing import Any, Callable, Iterable, Iterator, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,6 +15,15 @@ from opencv_iib.keypoints import of_cv2
 
 Matches = tuple[tuple[Any, ...], ...]
 AT_ONCE = 512  # queries a call: with a million codes, less than a second on one core
+MAX_PADDED = 1 << 26  # neighbours of all queries that may be more than there are codes
+
+
+def check_padding(queries: int, k: int, rows: Callable[[], int]) -> None:
+    """:raises opencv_iib.error: if k exceeds the number of codes and the result would fill the memory. The C++ library, which gets a part of the
+    queries, cannot check it."""
+    if queries * k > MAX_PADDED and k > (count := rows()):  # counted last, since a matcher unpacks its codes for it
+        raise _core.error(f'k is {k}, but there are {count} descriptors to find: ask for at most {max(count, MAX_PADDED // queries)} for each '
+                          f'of {queries} queries')
 
 
 def _masks(masks: Any) -> list[np.ndarray]:
@@ -118,6 +127,7 @@ class HierarchicalMatcher(_core.HierarchicalMatcher):
 
         :return: indices and distances, queries x k int32, -1 for none; among added descriptors the number of the image too."""
         queries, k, matcher = as_codes(queryDescriptors, 'descriptors'), integer(k, 'k'), self._searched(trainDescriptors)
+        check_padding(len(queries), k, lambda: sum(map(len, matcher.getTrainDescriptors())))
         parts = [matcher._knnMatchArrays(some, k, allowed)
                  for _, some, allowed in self._parts(queries, _masks(mask if masks is None else masks))]
         found = tuple(np.concatenate(arrays) for arrays in zip(*parts)) if len(parts) > 1 else parts[0]

@@ -2,7 +2,7 @@ import pickle
 
 import numpy as np
 
-from opencv_iib import MappedIndex, error
+from opencv_iib import HierarchicalMatcher, MappedIndex, error
 from support import InFolder, brute_force
 
 
@@ -38,6 +38,13 @@ class MappedIndexTest(InFolder):
         self.assertEqual(index.search(self.queries[:0], 3)[0].shape, (0, 3))
         with self.assertRaisesRegex(error, r'are 300 descriptors to find: ask for at most 3355443 for each of 20 queries'):
             index.search(self.queries, 3355444)
+        many = np.zeros((4000, self.queries.shape[1]), np.uint8)  # each part of the queries alone would fit
+        matcher = HierarchicalMatcher()
+        matcher.add(self.codes)
+        for search in (index.search, lambda queries, k: matcher.knnMatchArrays(queries, k=k), lambda queries, k: matcher.knnMatchArrays(queries, self.codes, k)):
+            with self.assertRaisesRegex(error, r'are 300 descriptors to find: ask for at most 16777 for each of 4000 queries'):
+                search(many, 20000)
+            self.assertEqual(search(many, 301)[0].shape, (4000, 301))
 
     def test_removed_images(self):
         reader = MappedIndex(self.folder)

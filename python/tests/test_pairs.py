@@ -259,7 +259,7 @@ class Pairs(Collection):
         for name, *place in (('n.png', 48.1, -11.5, None), ('o.png', 0, 0, 9)):
             shutil.copy(self.images / 'a.png', self.images / name)
             located(name, *place)
-        places = choices.gps_places(self.images, ('n.png', 'o.png'))
+        places = list(choices.gps_places(self.images, ('n.png', 'o.png')))
         self.assertTrue(np.isnan(places[0][3]) and places[1] is None, places)
         far = [a + [0, 0, 0, 3000], a + [0, 200, 0, 3000], places[0]]  # in the mountains
         self.assertEqual(list(choices.nearest(far, 1)), [(0, 2), (1, 0), (2, 0)], 'an unknown height is not that of the sea')

@@ -22,7 +22,7 @@ struct SegmentEntry
 SegmentEntry writeSegment(
         const String& filename, uint64 number, const std::vector<int>& levels, const PackedCodes& codes);
 
-//! A file mapped into read-only memory, and read from the disk on access. The file must not be shortened meanwhile.
+//! A file mapped into read-only memory (mapped_file.cpp), and read from the disk on access. The file must not be shortened meanwhile.
 class MappedFile
 {
 public:

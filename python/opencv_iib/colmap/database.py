@@ -155,9 +155,9 @@ class Database(contextlib.AbstractContextManager['Database']):
             self._db.execute('BEGIN')
             yield
 
-    def _insert(self, table: str, *values: Any) -> Optional[int]:
-        """Adds a row, or replaces that of its key. :param table: its name, perhaps with columns. :return: the key."""
-        return self._db.execute(f'INSERT OR REPLACE INTO {table} VALUES ({", ".join("?" * len(values))})', values).lastrowid
+    def _insert(self, table: str, *values: Any, verb: str = 'INSERT') -> Optional[int]:
+        """Adds a row. :param table: its name, perhaps with columns. :param verb: REPLACE if the key may be there. :return: the key."""
+        return self._db.execute(f'{verb} INTO {table} VALUES ({", ".join("?" * len(values))})', values).lastrowid
 
     # Images
 
@@ -256,13 +256,13 @@ class Database(contextlib.AbstractContextManager['Database']):
             self._write_pair(pair_id(a, b), matches, inliers, fundamental)
 
     def _write_pair(self, key: int, matches: np.ndarray, inliers: Optional[np.ndarray], fundamental: Optional[np.ndarray]) -> None:
-        self._insert('matches', key, len(matches), 2, np.ascontiguousarray(matches, np.uint32).tobytes())
+        self._insert('matches', key, len(matches), 2, np.ascontiguousarray(matches, np.uint32).tobytes(), verb='REPLACE')
         if inliers is not None:
             zero = np.zeros((3, 3))
             matrix = zero if fundamental is None else np.ascontiguousarray(fundamental, np.float64)
             self._insert('two_view_geometries (pair_id, rows, cols, data, config, F, E, H, qvec, tvec)', key, len(inliers), 2,
                          np.ascontiguousarray(inliers, np.uint32).tobytes(), UNCALIBRATED if len(inliers) else 0,
-                         *(array.tobytes() for array in (matrix, zero, zero, np.array([1., 0, 0, 0]), np.zeros(3))))
+                         *(array.tobytes() for array in (matrix, zero, zero, np.array([1., 0, 0, 0]), np.zeros(3))), verb='REPLACE')
 
     # Pairs that were searched
 

@@ -65,13 +65,13 @@ def retrieval(count: int, load: Callable[[int], np.ndarray], level_sizes: Sequen
                 yield a, int(b)
 
 
-def gps_places(folder: str, names: Iterable[str]) -> list[Optional[np.ndarray]]:
+def gps_places(folder: str, names: Iterable[str]) -> Iterator[Optional[np.ndarray]]:
     """As gps_place, of each image; None also for a file that cannot be read."""
     def place(path: str) -> Optional[np.ndarray]:
         with contextlib.suppress(OSError, ValueError):
             return gps_place(read_bytes(path))
         return None
-    return [place(os.path.join(folder, name)) for name in names]
+    return (place(os.path.join(folder, name)) for name in names)
 
 
 def list_pairs(database: Database, folder: str, names: Iterable[str], pairs: Path, neighbours: int, level_sizes: tuple[int, ...]) -> Pairs:
@@ -88,7 +88,7 @@ def list_pairs(database: Database, folder: str, names: Iterable[str], pairs: Pat
         voted = retrieval(count, lambda i: database.load_codes(ids[i]), level_sizes, neighbours)
         chosen, total = distinct(voted), None
     elif pairs == 'gps':
-        chosen, total = distinct(nearest(gps_places(folder, numbers), neighbours)), None
+        chosen, total = distinct(nearest(list(gps_places(folder, numbers)), neighbours)), None
     else:
         return distinct(read_list(pairs, {**dict.fromkeys(names), **numbers})[0]), None
     return ((ids[a], ids[b]) for a, b in chosen), total

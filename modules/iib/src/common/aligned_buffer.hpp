@@ -26,6 +26,11 @@ template <typename T> class AlignedBuffer
 public:
     AlignedBuffer() : values(0), capacity(0) {}
     explicit AlignedBuffer(size_t n) : AlignedBuffer() { allocate(n); }
+    AlignedBuffer(AlignedBuffer&& other)
+        : memory(std::move(other.memory)), values(other.values), capacity(other.capacity)
+    {
+        other.capacity = 0;
+    }
 
     //! Room for at least n values; the content is lost if it grows.
     void allocate(size_t n)

@@ -42,10 +42,10 @@ bool findsAngles(const Parameters& p)
 //! The pixels of a region's boxes, upright or rotated by any angle, in whole squares; some may be reflected.
 Rect boxPixels(const SupportRegion& region, int border, Size image)
 {
-    const auto pixelsOf = [](Rect r) { return Rect(r.tl() * (int)BOX_SQUARE, r.size() * (int)BOX_SQUARE); };
+    const auto inPixels = [](Rect r) { return Rect(r.tl() * (int)BOX_SQUARE, r.size() * (int)BOX_SQUARE); };
     // corners of rotated boxes are at most (28 sqrt(2) + 12) / 40 from the centre; 4 pixels on either side for roundings
     const SupportRegion extent(region.centre, region.side * (region.isRotated() ? 1.3 : 1) + 8);
-    return pixelsOf(squaresOf(extent.pixels(pixelsOf(boxBounds(border, image)))));
+    return inPixels(squaresOf(extent.pixels(inPixels(boxBounds(border, image)))));
 }
 
 //! The pixels that a region's descriptor reads.

@@ -56,10 +56,10 @@ struct DescriptorPlan
 //! @param checked parameters that have passed their check().
 Ptr<const DescriptorPlan> makePlan(const Parameters& checked);
 
-//! Whether the keypoint's support region, upright or rotated, lies inside the image.
+//! Whether the keypoint's support region, upright or rotated, lies inside the image (compute.cpp).
 bool isInside(const DescriptorPlan& plan, const KeyPoint& keypoint, Size image);
 
-/** Describes keypoints (paper, algorithm 1). All arguments are checked.
+/** Describes keypoints (paper, algorithm 1; compute.cpp). All arguments are checked.
 @param extra maps of the image's size.
 @param descriptors keypoints.size() rows of plan.bytes, CV_8U, allocated. */
 void describe(const DescriptorPlan& plan, const Mat& image, const std::vector<Mat>& extra,

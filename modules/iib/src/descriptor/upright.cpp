@@ -65,15 +65,15 @@ void describeUpright(const BatchJob& job)
         const double largestSum = bounds.value * pixels;
         const bool fits16Bits = largestSum <= USHRT_MAX, fits32Bits = largestSum <= UINT_MAX;
         const bool ofBytes = !is16Bit(channels);
-        // the fastest whose pixels and sums fit its types
-        const auto describe =
+        // whose pixels and sums fit its types
+        const auto fastest =
                 ofBytes && fits16Bits && columnsAreFaster(job, channels, bounds.gradient > 0, side)
                         ? describeBatch<ColumnBand, ushort>
                 : ofBytes && fits16Bits ? describeBatch<IntegralBand<short, ushort>, ushort>
                 : ofBytes && fits32Bits ? describeBatch<IntegralBand<short, unsigned>, unsigned>
                 : fits32Bits            ? describeBatch<IntegralBand<int, unsigned>, unsigned>
                                         : describeBatch<IntegralBand<int, unsigned>, double>;
-        describe(job, group, channels, bounds);
+        fastest(job, group, channels, bounds);
     }
 }
 

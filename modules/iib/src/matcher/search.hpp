@@ -98,7 +98,7 @@ private:
 
 /* One pass of some queries over all train codes, chunk by chunk, on one thread. */
 
-//! Adds the nearest to the tables of all queries and of all train codes. forTrains is null if that direction is not needed,
+//! Adds the nearest to the tables of all queries and of all train codes (pair_scan.cpp). forTrains is null if that direction is not needed,
 //! else it has room for whole CodeBlocks.
 void scanNearest(const SearchInput& input, const Range& queries, KnnTable& forQueries, KnnTable* forTrains);
 

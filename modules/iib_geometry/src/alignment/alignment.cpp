@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "opencv2/iib/alignment.hpp"
+#include "opencv2/iib/detail/outputs.hpp"
 
 #include "../common/points.hpp"
 #include "../verdict/support.hpp"

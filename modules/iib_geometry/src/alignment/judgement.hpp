@@ -14,14 +14,14 @@ struct Judgement
     std::string note;     //!< advice about a transform that was found, or empty
 };
 
-/** Standard deviations of the image's corners in the reference, 4 x 1, CV_64F, working pixels.
+/** Standard deviations of the image's corners in the reference, 4 x 1, CV_64F, working pixels (corner_errors.cpp).
 @param beside displacement of a part of the images beside the transform (deviationBeside).
 @param pixel working pixels per pixel in which the matches were refined. */
 Mat cornerErrors(const FittedTransform& fitted, const AlignedPoints& points,
         const std::vector<Point2d>& corners, double beside, double pixel);
 
 /** Whether the matches that agree are marks of the sensor, such as hot pixels: single pixels that do not move, while hardly any
-larger point does. */
+larger point does (sensor_marks.cpp). */
 bool areOfTheSensor(const FittedTransform& fitted, const Evidence& evidence);
 
 /** Index of the simplest transform that is true (compare Torr 1998): no richer one explains the matches better, or richer ones belong to

@@ -18,7 +18,7 @@ Points pointsOf(InputArray given, const char* function, const char* argument)
         CV_Error(Error::StsBadArg,
                 format("%s: %s must be N x 2 numbers, CV_32F or CV_64F", function, argument));
     Mat rows;
-    points.reshape(2, count).convertTo(rows, CV_64F);
+    points.reshape(1, count).reshape(2).convertTo(rows, CV_64F);  // also of N x 1 x 2
     if (!checkRange(rows, true, nullptr, -farthest, farthest))
         CV_Error(Error::StsBadArg, format("%s: %s has numbers that are no pixels: not finite, or beyond %g",
                                            function, argument, farthest));
@@ -53,14 +53,6 @@ Rect2d spanOf(Points points)
         most.*axis = std::max(points[count - 1 - outermost].*axis, least.*axis + 1);
     }
     return Rect2d(least, most);
-}
-
-void writeRows(const Mat& rows, OutputArray output)
-{
-    if (!output.needed())
-        return;
-    const int type = output.fixedType() ? output.type() : rows.type(), channels = CV_MAT_CN(type);
-    (channels == rows.cols ? rows.reshape(channels) : rows).convertTo(output, type);
 }
 
 void clear(OutputArray output)

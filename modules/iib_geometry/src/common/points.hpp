@@ -33,10 +33,6 @@ Point2d moved(const Matx33d& by, const Point2d& point);
 pixel wide and high. */
 Rect2d spanOf(Points points);
 
-/** Writes a matrix, converted to the output's type if that is fixed. Elements may be whole rows, as in
-std::vector<Point2f>. */
-void writeRows(const Mat& rows, OutputArray output);
-
 //! Empties an output; one of fixed size, such as a Matx, becomes NaN.
 void clear(OutputArray output);
 

@@ -27,7 +27,7 @@ std::vector<Match> guidedMatches(const Views& views, const std::vector<size_t>& 
 /** Matches an image with one of a map's images in views of both, and transfers the keypoints of the map's image like
 their nearest match. Finds points at another zoom, rotation or tilt.
 @param view number of the map's image, which must have a picture.
-@return matches; `keypoint` is the number of the nearest match, `bits` the distance from it in pixels. */
+@return matches; `keypoint` is the number of the nearest match, `bits` the distance from it in pixels (map_in_views.cpp). */
 std::vector<Match> matchesInViews(const Map& map, size_t view, const ImageViews& image);
 
 //! Sets the deviation of refined matches to that of their reprojection errors.

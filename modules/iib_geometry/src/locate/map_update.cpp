@@ -184,12 +184,19 @@ Location MapUpdate::add(
         const std::string& name, InputArray image, const Camera& camera, int orientation, InputArray mask)
 {
     const Photograph photograph(image.getMat(), orientation, mask.getMat());
+    const auto checkNew = [&] {  // before the work, and again after it
+        impl_->checkOpen();
+        checkName(name);
+        if (impl_->names.count(name) != 0)
+            CV_Error(Error::StsBadArg, "an image named '" + name + "' is already a part of the update");
+    };
+    std::unique_lock<std::mutex> lock(impl_->mutex);
+    checkNew();
+    lock.unlock();
     LocatedImage found = impl_->locator.find(photograph, camera);
-    const std::lock_guard<std::mutex> lock(impl_->mutex);
-    impl_->checkOpen();
-    checkName(name);
-    if (!impl_->names.insert(name).second)
-        CV_Error(Error::StsBadArg, "an image named '" + name + "' is already a part of the update");
+    lock.lock();
+    checkNew();
+    impl_->names.insert(name);
     found.features.name = name;
     if (found.location.found)
         impl_->seen.push_back(found);

@@ -46,11 +46,11 @@ struct Map
 //! @throws cv::Exception for a folder without a map, or with a damaged one.
 Map readMap(const std::string& folder);
 
-//! As buildMap, in memory.
+//! As buildMap, in memory (mapping.cpp).
 Map makeMap(const std::string& model, const ImageReader& images, const MapOptions& options,
         const MappingReport& report);
 
-/** Estimates the map's own error by leave-one-out: the mean squared deviation of some images, located by the points that the others
+/** Estimates the map's own error by leave-one-out (map_error.cpp): the mean squared deviation of some images, located by the points that the others
 triangulate, from their poses in the map. A few images do not span all directions, so an isotropic sample of their mean size is added.
 @return covariance of a camera's centre, in units of the scene's distance, and of a rotation, both in the camera's axes;
 zeros if no point is seen by three images. */

@@ -209,6 +209,7 @@ Map makeMap(const std::string& model, const ImageReader& read, const MapOptions&
 void buildMap(const std::string& model, const ImageReader& images, const std::string& map,
         const MapOptions& options, const MappingReport& report)
 {
+    checkOptions(options);
     const MapFolder folder(map);
     folder.write(makeMap(model, images, options, report));
 }

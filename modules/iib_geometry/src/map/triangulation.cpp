@@ -126,17 +126,20 @@ void refineTracks(std::vector<Track>& tracks, std::vector<MapImage>& images)
         const auto& [numbers, keypoints] = *list[n];
         const MapImage& fixed = images[numbers.first];
         MapImage& moved = images[numbers.second];
-        if (fixed.picture.pixels.empty() || moved.picture.pixels.empty())
-            return;
-        KeypointPairs pairs;
-        for (const auto& [a, b] : keypoints)
+        if (!fixed.picture.pixels.empty() && !moved.picture.pixels.empty())
         {
-            pairs.fixed.emplace_back(fixed.pixels[size_t(a)], fixed.sizes[size_t(a)]);
-            pairs.moved.emplace_back(moved.pixels[size_t(b)], moved.sizes[size_t(b)]);
+            KeypointPairs pairs;
+            for (const auto& [a, b] : keypoints)
+            {
+                pairs.fixed.emplace_back(fixed.pixels[size_t(a)], fixed.sizes[size_t(a)]);
+                pairs.moved.emplace_back(moved.pixels[size_t(b)], moved.sizes[size_t(b)]);
+            }
+            refine(prepared.of(numbers.first, fixed.picture), prepared.of(numbers.second, moved.picture),
+                    pairs);
+            // no other job writes these: a keypoint has one track
+            for (size_t i = 0; i < keypoints.size(); i++)
+                moved.pixels[size_t(keypoints[i].second)] = pairs.moved[i].pt;
         }
-        refine(prepared.of(numbers.first, fixed.picture), prepared.of(numbers.second, moved.picture), pairs);
-        for (size_t i = 0; i < keypoints.size(); i++)  // no other job writes these: a keypoint has one track
-            moved.pixels[size_t(keypoints[i].second)] = pairs.moved[i].pt;
         for (size_t i : {numbers.first, numbers.second})
             if (--uses[i] == 0)
                 prepared.release(i);

@@ -12,7 +12,7 @@ namespace cv::iib {
 @param essentials cleared, then filled */
 void fivePointEssentials(const Point2d first[5], const Point2d second[5], std::vector<Matx33d>& essentials);
 
-/** The real roots of a polynomial of degree 1 to 10, except those of even multiplicity.
+/** The real roots of a polynomial of degree 1 to 10, except those of even multiplicity (real_roots.cpp).
 @param coefficients degree + 1 numbers, the constant first
 @param roots receives up to `degree` numbers
 @returns the number of roots */

@@ -74,8 +74,8 @@ private:
 };
 
 /** The corners of an image, with a margin, mapped to another image.
-@param map from pixels of the image to pixels of the other image. @param margin share of the image's size. */
-std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map, double margin = .1);
+@param map from pixels of the image to pixels of the other image. @param share of the image's size. */
+std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map, double share = .1);
 
 //! Matches two views by the recommended matcher.
 std::vector<DMatch> matchesOf(const DescribedView& first, const DescribedView& second);

@@ -208,7 +208,11 @@ TEST(RelativePose, takes_both_depths_and_all_layouts_and_gives_fixed_sizes)
     ASSERT_TRUE(findRelativePose(both.colRange(0, 2), both.colRange(2, 4), CAMERA, CAMERA, fixedR, fixedT,
             noArray(), 0, covariance));
     const PoseResult again(one, other);
-    for (const RelativePose& same : {again.pose, RelativePose{fixedR, fixedT}})
+    const int sizes[] = {(int)first.size(), 1, 2};
+    Matx33d deepR;
+    Vec3d deepT;
+    ASSERT_TRUE(findRelativePose(Mat(first).reshape(1, 3, sizes), second, CAMERA, CAMERA, deepR, deepT));
+    for (const RelativePose& same : {again.pose, RelativePose{fixedR, fixedT}, RelativePose{deepR, deepT}})
     {
         EXPECT_EQ(Matx33d(R), same.R);
         EXPECT_EQ(Vec3d(t), same.t);

@@ -299,8 +299,8 @@ void compareBoxes(const short* means, const BoxGridShape& grid, uchar* out)
             m += LANES;
             const v_int16 nextSum = v_add_wrap(vx_load(m), vx_load(m + below));
             const v_int16 nextDifference = v_sub_wrap(vx_load(m), vx_load(m + below));
-            const v_int16 right = v_rotate_right<BOX_LANES>(difference, nextDifference);
-            storeGreater(sum, v_rotate_right<BOX_LANES>(sum, nextSum), out + col, difference,
+            const v_int16 right = eightBehind(difference, nextDifference);
+            storeGreater(sum, eightBehind(sum, nextSum), out + col, difference,
                     v_sub_wrap(vx_setzero_s16(), right), out + bytes + col);
             storeGreater(difference, right, out + 2 * bytes + col);
             sum = nextSum;

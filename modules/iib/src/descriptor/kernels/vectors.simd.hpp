@@ -99,6 +99,17 @@ inline v_uint32 repeatLastFour(const v_uint32& v)
 #endif
 }
 
+//! The values eight lanes further on. NEON has no rotation by a whole vector. @param next the vector behind `values`.
+inline v_int16 eightBehind(const v_int16& values, const v_int16& next)
+{
+#if CV_AVX2
+    return v_rotate_right<8>(values, next);
+#else
+    (void)values;
+    return next;
+#endif
+}
+
 /* Stores groups of four lanes, every other one to `even` and to `odd`; `lane` counts the lanes that were stored before,
  and a vector may be as small as one. */
 inline void storeAlternately(unsigned* even, unsigned* odd, int lane, const v_int32& v)

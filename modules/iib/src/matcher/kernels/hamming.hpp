@@ -87,7 +87,7 @@ struct PrunedScan
     CodePairs pairs;
     const PruningPolicy& policy;
     const int* queryThresholds;  //!< calls of `found` may lower them
-    const int* trainThresholds;  //!< as many, with room for whole CodeBlocks; or null
+    const int* trainThresholds;  //!< of each train code, with room for whole CodeBlocks; or null
     const PairReport& found;
     int64* passed;  //!< for each stage, the scan adds the pairs that pass it
     int* limits;    //!< with a single stage, PruningPolicy::limit of each query; else null

@@ -18,7 +18,7 @@ namespace cv { namespace iib {
 CV_CPU_OPTIMIZATION_NAMESPACE_BEGIN
 namespace {
 
-// Compilers make vectors of this loop and that of blur(), with this file's instruction set.
+// At -O3 compilers make vectors of this loop and that of blur(), with this file's instruction set.
 void widen(const uchar* pixels, short* out, int width)
 {
     for (int x = 0; x < width; x++)

@@ -22,12 +22,12 @@ static_assert(PATCH % INTS == 0 && PATCH_SAMPLES % SHORTS == 0, "vectors fit row
 
 void smooth(const uchar* const rows[3], ushort* sums, uchar* out, int width)
 {
-    int x = 0;
-    for (; x < width; x++)  // compilers make vectors of it
+    for (int x = 0; x < width; x++)  // at -O3 compilers make vectors of it
         sums[1 + x] = (ushort)(rows[0][x] + 2 * rows[1][x] + rows[2][x]);
     sums[0] = sums[1];
     sums[width + 1] = sums[width];
-    for (x = 0; x <= width - SHORTS; x += SHORTS)
+    int x = 0;
+    for (; x <= width - SHORTS; x += SHORTS)
         v_pack_store(out + x, (vx_load(sums + x) + vx_load(sums + x + 2) + (vx_load(sums + x + 1) << 1) +
                                       vx_setall_u16(8)) >>
                                       4);
