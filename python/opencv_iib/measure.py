@@ -16,9 +16,9 @@ from opencv_iib._drawing import GOOD, INK, OTHER, draw
 from opencv_iib._files import check_images, check_outputs, write_whole
 from opencv_iib._image_file import ImageFile, Masks
 from opencv_iib._images import check_picture, import_cv2, write_picture
+from opencv_iib._orientation import Turn, upright
 from opencv_iib._streams import is_open_file
 from opencv_iib._two_views import show_the_same
-from opencv_iib._orientation import Turn, upright
 from opencv_iib.enums import Orientation
 from opencv_iib.features import FeatureOptions, Features
 from opencv_iib.functions import match
@@ -30,6 +30,7 @@ from opencv_iib.views import match_stored, rotation_and_scale, similarity
 
 COMPARED = .25  # pixels: the scale at which inliers of two poses are compared, since at their own scales the looser pose has more
 CERTAIN = 200  # inliers without a pose that need no second try: fewer may be wrong together
+UNKNOWN = 60  # degrees: an error of a direction of this size leaves it open
 SUFFIXES = '.csv', '.json', '.npz'
 COLUMNS = ('x1', 'y1', 'x2', 'y2', 'xx', 'xy', 'yy', 'similarity', 'bits')
 
@@ -106,8 +107,10 @@ class Measured(NamedTuple):
             return f'{text}\nno pose: {self.pose.reason}'.replace('no pose: no pose', 'no pose')
         turn, towards = import_cv2().Rodrigues(self.pose.R)[0].ravel(), -self.pose.R.T @ self.pose.t.ravel()
         errors = np.degrees(np.sqrt(np.diag(self.pose.covariance)))
-        return (f'{text}\npose: {int(self.pose.inliers.sum())} agree; the second camera stands towards {towards.round(3)} of the '
-                f'first (right, down, ahead; +-{np.linalg.norm(errors[3:]):.2g} degrees), and is turned by '
+        unsure = np.linalg.norm(errors[3:])
+        where = (f'stands towards {towards.round(3)} of the first (right, down, ahead; +-{unsure:.2g} degrees)' if unsure < UNKNOWN
+                 else 'hardly moved, so its direction is unknown')
+        return (f'{text}\npose: {int(self.pose.inliers.sum())} agree; the second camera {where}, and is turned by '
                 f'{np.degrees(-turn).round(2)} degrees (+-{np.linalg.norm(errors[:3]):.2g})')
 
 

@@ -60,6 +60,8 @@ class Match(InFolder):
         np.testing.assert_allclose(towards, [1, 0, 0], atol=.02)
         np.testing.assert_allclose(turned, [0, 3, 0], atol=.1)
         self.assertEqual(cv2.imread(str(self.folder / 'm.png')).shape, (44 + 480, 2 * 640, 3))
+        still = self.write('still.png', self.world((4, 8), 0, 3, distortion=lens) // 2 + 20)
+        self.assertIn('the second camera hardly moved, so its direction is unknown, and is turned by', run_command('match', a, still, '--out', '-', '--camera', camera)[2])
         # twice the focal length without distortion gives another pose
         wrong = match_images(a, b, cameras=['PINHOLE,480,360,800,800,240,180'])
         turn = np.degrees(np.arccos((np.trace(wrong.pose.R) - 1) / 2))

@@ -161,7 +161,7 @@ def figures():
         return max((row for key, row in found().items() if key[:2] == ('other light', points) and key[2] in ('SIFT', 'RootSIFT')), key=lambda row: float(row['at_5']))
     ours = found()['other light', *CHAIN]
     scores = {'chain': ours, 'small': found()['other light', 'Hessian', 'IIB SMALL'], 'same_points': best('Hessian'), 'sift_points': best('SIFT normalized')}
-    short = {**scores, 'default_ratio': found('0.92')['other light', *CHAIN], 'sift': best('SIFT'), 'orb': found()['other light', 'ORB', 'ORB']}
+    short = {**scores, 'default_ratio': found('0.92')['other light', *CHAIN], 'sift': best('SIFT')}
     gains = {'gain': ROOT, 'gain_by_points': (OTHER[0], CHAIN[1]), 'gain_by_descriptor': SAME}
     fixed = max((found(row['ratio'])['other light', *SAME] for row in summaries.read(RESULTS / 'controls.csv') if row['ratio'] != 'best'), key=lambda row: float(row['at_5']))
     return {**{name: summaries.score(row) for name, row in scores.items()}, **{name + '_mean': '%.2f' % float(row['at_5']) for name, row in short.items()},

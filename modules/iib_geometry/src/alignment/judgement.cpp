@@ -108,7 +108,7 @@ void judgeMotion(const FittedTransform& fitted, const Evidence& evidence, Judgem
         judgement.against = format(
                 "%d matches agree with one transform, and %d more are beside it along lines through one "
                 "point: the camera moved through a scene that is not flat (parallax; findRelativePose is for "
-                "such images)",
+                "such images), or a pattern repeats",
                 fitted.count(), countOf(moved));
 }
 
