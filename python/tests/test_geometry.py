@@ -8,8 +8,10 @@ import unittest
 import numpy as np
 
 import opencv_iib
+from opencv_iib._images import import_cv2
 from support import texture
 
+FACADE = os.path.join(os.environ.get('OPENCV_TEST_DATA_PATH', ''), 'strecha', 'entry-P10', 'images', '0000.jpg')
 CAMERA = np.array([[500, 0, 320], [0, 500, 240], [0, 0, 1.0]])
 
 
@@ -69,6 +71,26 @@ class Alignment(unittest.TestCase):
         self.assertEqual((alignment.found, alignment.transform, alignment.error), (False, None, None))
         self.assertRegex(alignment.reason, '^the images have too few matches$|could be random')
 
+    @unittest.skipUnless(os.path.isfile(FACADE), 'OPENCV_TEST_DATA_PATH has no strecha/entry-P10')
+    def test_windows_that_look_alike_are_no_place(self):
+        """On a large map, where little of a small picture is left, another window agrees. In a part of the map the right one does."""
+        cv2 = import_cv2()
+        large = cv2.resize(cv2.imread(FACADE, cv2.IMREAD_GRAYSCALE), None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC)
+        x, y, zoom, tilt = 2012.23, 965.81, 1.36, .18
+        turn = cv2.getRotationMatrix2D((0, 0), 210.04, 1 / zoom)[:, :2]
+        corners = np.array([[-320 * (1 - tilt), -240], [320 * (1 - tilt), -240], [320 * (1 + tilt), 240], [-320 * (1 + tilt), 240]]) @ turn.T + (x, y)
+        true = cv2.getPerspectiveTransform(np.float32([[0, 0], [639, 0], [639, 479], [0, 479]]), np.float32(corners))
+        seen = cv2.warpPerspective(large, true, (640, 480), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP)
+        for seed in range(4):
+            noise = np.random.default_rng(seed).normal(0, 2, seen.shape)
+            picture = ((seen / 255) ** 1.3 * .41 * 255 + noise).clip(0, 255).astype(np.uint8)
+            self.assertFalse(opencv_iib.alignImages(large, picture).found)  # at 1 and 3 a window 1300 pixels off agreed
+            left, top = int(x) - 512, int(y) - 512
+            found = opencv_iib.alignImages(np.ascontiguousarray(large[top:top + 1024, left:left + 1024]), picture)
+            self.assertTrue(found.found, found.reason)
+            middle, right = (cv2.perspectiveTransform(np.array([[[320., 240]]]), by).ravel() for by in (found.transform, true))
+            np.testing.assert_allclose(middle + (left, top), right, atol=2)
+
 
 @unittest.skipUnless(os.path.exists('/proc/self/clear_refs'), 'no account of memory on this system')
 class Memory(unittest.TestCase):
@@ -77,6 +99,7 @@ class Memory(unittest.TestCase):
         program = """
 import numpy as np
 import opencv_iib
+from opencv_iib._images import import_cv2
 from support import texture
 
 def peak(name):

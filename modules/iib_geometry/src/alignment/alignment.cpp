@@ -176,7 +176,8 @@ private:
     }
 
     /** Matches again in the views of the transform that was found, while they differ from the last ones. This includes a refusal: in views that
-    fit badly, matches may lie as if the camera had moved. */
+    fit badly, matches may lie as if the camera had moved. A transform that is refused in its own views is of another place, such as a similar
+    window. */
     void improve(const ImageViews& second, Matx33d map, int tried, Answer& best) const
     {
         for (int round = 0; round < MOST_IMPROVED; round++)
@@ -187,7 +188,13 @@ private:
             map = next;
             const Answer answer =
                     answerOf(WorkingPair(reference_, second, WORKING_SIZE, map), model_, tried + 1);
-            if (answer.agreeing.rows <= best.agreeing.rows || (best.found() && !answer.found()))
+            if (best.found() && !answer.found())
+            {
+                best.judgement.against =
+                        "in views that look alike under the best transform, " + answer.judgement.against;
+                return;
+            }
+            if (answer.agreeing.rows <= best.agreeing.rows)
                 return;
             best = answer;
         }
