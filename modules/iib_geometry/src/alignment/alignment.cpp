@@ -190,8 +190,10 @@ private:
                     answerOf(WorkingPair(reference_, second, WORKING_SIZE, map), model_, tried + 1);
             if (best.found() && !answer.found())
             {
-                best.judgement.against =
-                        "in views that look alike under the best transform, " + answer.judgement.against;
+                best.judgement = {
+                        "in views that look alike under the best transform, " + answer.judgement.against,
+                        true, ""};
+                best.simplest = -1;
                 return;
             }
             if (answer.agreeing.rows <= best.agreeing.rows)
