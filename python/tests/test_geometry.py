@@ -72,8 +72,7 @@ class Alignment(unittest.TestCase):
         self.assertRegex(alignment.reason, '^the images have too few matches$|could be random')
 
     @unittest.skipUnless(os.path.isfile(FACADE), 'OPENCV_TEST_DATA_PATH has no strecha/entry-P10')
-    def test_windows_that_look_alike_are_no_place(self):
-        """On a large map, where little of a small picture is left, another window agrees. In a part of the map the right one does."""
+    def test_a_picture_on_a_large_map_is_not_at_windows_that_look_alike(self):
         cv2 = import_cv2()
         large = cv2.resize(cv2.imread(FACADE, cv2.IMREAD_GRAYSCALE), None, fx=4, fy=4, interpolation=cv2.INTER_CUBIC)
         x, y, zoom, tilt = 2012.23, 965.81, 1.36, .18
@@ -84,12 +83,10 @@ class Alignment(unittest.TestCase):
         for seed in range(4):
             noise = np.random.default_rng(seed).normal(0, 2, seen.shape)
             picture = ((seen / 255) ** 1.3 * .41 * 255 + noise).clip(0, 255).astype(np.uint8)
-            self.assertFalse(opencv_iib.alignImages(large, picture).found)  # at 1 and 3 a window 1300 pixels off agreed
-            left, top = int(x) - 512, int(y) - 512
-            found = opencv_iib.alignImages(np.ascontiguousarray(large[top:top + 1024, left:left + 1024]), picture)
+            found = opencv_iib.alignImages(large, picture)
             self.assertTrue(found.found, found.reason)
             middle, right = (cv2.perspectiveTransform(np.array([[[320., 240]]]), by).ravel() for by in (found.transform, true))
-            np.testing.assert_allclose(middle + (left, top), right, atol=2)
+            np.testing.assert_allclose(middle, right, atol=2)
 
 
 @unittest.skipUnless(os.path.exists('/proc/self/clear_refs'), 'no account of memory on this system')

@@ -10,7 +10,6 @@
 namespace cv::iib {
 namespace {
 
-const int WORKING_SIZE = 1024;    // as HessianDetector has it
 const int FEATURES = 2000;        // of a view
 const int MOST_IMPROVED = 3;      // rounds of improve()
 const double MOST_TILT = 4;       // of the views that models with a shear are searched in
@@ -160,43 +159,43 @@ private:
     void search(const ImageViews& second, Answer& best) const
     {
         if (best.judgement.isLast)
-            return improve(second, Matx33d::eye(), 1, best);
+            improve(second, mapOfWholeImages(reference_, second), false, 1, best);
+        const bool areOfOneSize = !isMuchLarger(reference_, second);
+        if (best.judgement.isLast && (best.found() || areOfOneSize))
+            return;
+        if (!areOfOneSize)
+            best = Answer();  // of the whole reference and a picture that may show a part of it
         const bool onlySimilar = model_ == ALIGN_SIMILARITY;
         searchViews(reference_, second, onlySimilar ? 1 : MOST_TILT,
                 [&](const ViewCandidate& candidate, int tried) {
                     const Matx33d map = onlySimilar ? similarityOf(candidate.map) : candidate.map;
-                    if (haveSimilarViews(map, Matx33d::eye()))
-                        return false;  // it was tried
                     attempt([&](int size) { return WorkingPair(reference_, second, size, map); }, second,
                             tried, best);
                     if (best.judgement.isLast)
-                        improve(second, map, tried, best);
+                        improve(second, map, true, tried, best);
                     return best.judgement.isLast;
                 });
     }
 
     /** Matches again in the views of the transform that was found, while they differ from the last ones. This includes a refusal: in views that
     fit badly, matches may lie as if the camera had moved. A transform that is refused in its own views is of another place, such as a similar
-    window. */
-    void improve(const ImageViews& second, Matx33d map, int tried, Answer& best) const
+    window: the search goes on.
+    @param areParts whether only the parts were matched that both images show. */
+    void improve(const ImageViews& second, Matx33d map, bool areParts, int tried, Answer& best) const
     {
         for (int round = 0; round < MOST_IMPROVED; round++)
         {
-            const Matx33d next = affineAt(best.transform.inv(), Point2d(reference_.size()) / 2);
-            if (haveSimilarViews(next, map))
+            const Scalar centre = mean(best.agreeing.reshape(4));
+            const Matx33d next = affineAt(best.transform.inv(), Point2d(centre[0], centre[1]));
+            if (haveSimilarViews(next, map) && (!areParts || showSameParts(next, map, second.size())))
                 return;
             map = next;
-            const Answer answer =
-                    answerOf(WorkingPair(reference_, second, WORKING_SIZE, map), model_, tried + 1);
+            areParts = true;
+            Answer answer = answerOf(WorkingPair(reference_, second, WORKING_SIZE, map), model_, tried + 1);
             if (best.found() && !answer.found())
-            {
-                best.judgement = {
-                        "in views that look alike under the best transform, " + answer.judgement.against,
-                        true, ""};
-                best.simplest = -1;
-                return;
-            }
-            if (answer.agreeing.rows <= best.agreeing.rows)
+                answer.judgement.against =
+                        "in views that look alike under the best transform, " + answer.judgement.against;
+            else if (answer.agreeing.rows <= best.agreeing.rows)
                 return;
             best = answer;
         }

@@ -5,7 +5,6 @@ namespace cv::iib {
 namespace {
 
 const int LEAST_SIDE = 64;  // pixels of the shorter side of a reduced image
-const int SMALL = 480;      // pixels of the longer side: smaller views of a search are enlarged
 
 int largestFactor(const Size& size) { return std::max(std::min(size.width, size.height) / LEAST_SIDE, 1); }
 
@@ -50,8 +49,8 @@ WorkingPair::WorkingPair(
 
 WorkingPair::WorkingPair(
         const ImageViews& reference, const ImageViews& image, int workingSize, const Matx33d& map)
-    : images_{&reference, &image}, views_(ViewPair::of(map).within(std::min(SMALL, workingSize), workingSize,
-                                           reference.size(), image.size()))
+    : images_{&reference, &image},
+      views_(ViewPair::of(map).within(workingSize, reference.size(), image.size(), map))
 {
     described_[0] = reference.described(views_.views[0], -1, cornersAround(image.size(), map.inv()));
     described_[1] =
@@ -84,7 +83,8 @@ AlignedPoints WorkingPair::refined(
 {
     const double size = 10;  // pixels: only the ratio of the two sizes counts
     const Matx33d toImage = inPixels(transform).inv();
-    const ViewPair full = ViewPair::of(affineAt(toImage, Point2d(images_[0]->size()) / 2));
+    const Scalar centre = mean(inPixels(points, agree).reshape(4));
+    const ViewPair full = ViewPair::of(affineAt(toImage, Point2d(centre[0], centre[1])));
     Matx33d fromImage[2], toWorking[2];
     std::shared_ptr<const PreparedImage> prepared[2];
     for (int i = 0; i < 2; i++)

@@ -7,12 +7,16 @@
 namespace cv::iib {
 namespace {
 
-const int COARSE_POINTS = 270;  // of a view, during the search
-const int COARSE_SIDE = 640;    // pixels: longer side of an image, during the search
+const int COARSE_POINTS = 270;  // of a square of COARSE_SIDE
+const int MARGIN = 64;          // pixels around a part of a view
 
-Ptr<IIBDescriptorExtractor> extractorOf(int points, bool upright)
+//! @param workingSize as in HessianDetector.
+Ptr<IIBDescriptorExtractor> extractorOf(int points, bool upright, int workingSize)
 {
-    const Ptr<IIBDescriptorExtractor> extractor = IIBDescriptorExtractor::createRecommended(points);
+    const Ptr<HessianDetector> detector = HessianDetector::create(points);
+    detector->setWorkingSize(workingSize);
+    const Ptr<IIBDescriptorExtractor> extractor =
+            IIBDescriptorExtractor::createFor(detector, IIBDescriptorExtractor::PRESET_UNIVERSAL);
     if (!upright)
         extractor->setOrientation(IIBDescriptorExtractor::ORIENTATION_KEYPOINT);
     return extractor;
@@ -22,6 +26,18 @@ void setAngle(std::vector<KeyPoint>& keypoints, float angle)
 {
     for (KeyPoint& keypoint : keypoints)
         keypoint.angle = angle;
+}
+
+/** Keeps the strongest points of each tile, so that every part of a large image has some.
+@param keypoints sorted by response. @param toTiles to pixels of the reduced image. */
+void keepStrongest(std::vector<KeyPoint>& keypoints, const Matx33d& toTiles)
+{
+    std::map<std::pair<int, int>, int> kept;
+    const auto isWeak = [&](const KeyPoint& keypoint) {
+        const Point2d tile = moved(toTiles, keypoint.pt) / ImageViews::COARSE_SIDE;
+        return kept[{cvFloor(tile.x), cvFloor(tile.y)}]++ >= COARSE_POINTS;
+    };
+    keypoints.erase(std::remove_if(keypoints.begin(), keypoints.end(), isWeak), keypoints.end());
 }
 
 }  // namespace
@@ -39,12 +55,12 @@ bool ImageViews::shows(const Point2d& point) const
     return Rect(Point(), size()).contains(pixel) && (mask_.empty() || mask_.at<uchar>(pixel));
 }
 
-std::shared_ptr<const DescribedView> ImageViews::extract(const View& view, float angle, const Mat& mask) const
+std::shared_ptr<const DescribedView> ImageViews::extract(
+        const Mat& pixels, const Mat& mask, float angle, int workingSize, const Matx33d& fromImage) const
 {
     const std::shared_ptr<DescribedView> found = std::make_shared<DescribedView>();
-    found->fromImage = view.fromImage(size());
-    const Mat pixels = view.pixels(image_);
-    const Ptr<IIBDescriptorExtractor> extractor = extractorOf(maxFeatures_, angle < 0);
+    found->fromImage = fromImage;
+    const Ptr<IIBDescriptorExtractor> extractor = extractorOf(maxFeatures_, angle < 0, workingSize);
     extractor->detect(pixels, found->keypoints, mask);
     setAngle(found->keypoints, angle);
     extractor->compute(pixels, found->keypoints, found->codes);
@@ -58,22 +74,31 @@ std::shared_ptr<const DescribedView> ImageViews::described(const View& view) con
     const std::lock_guard<std::mutex> lock(mutex_);
     std::shared_ptr<const DescribedView>& kept = described_[view];
     if (!kept)
-        kept = extract(view, -1, view.mask(size(), mask_));
+        kept = extract(
+                view.pixels(image_), view.mask(size(), mask_), -1, WORKING_SIZE, view.fromImage(size()));
     return kept;
 }
 
 std::shared_ptr<const DescribedView> ImageViews::described(
         const View& view, float angle, const std::vector<Point2d>& part) const
 {
-    Mat mask(view.sizeOf(size()), CV_8U, Scalar(0));
+    const int margin = cvCeil(std::min(
+            MARGIN / std::min(view.scales[0], view.scales[1]), (double)std::max(image_.rows, image_.cols)));
+    const Rect box = boxOf(part, size()), whole(Point(), size()),
+               shown = box.empty()
+                               ? whole
+                               : Rect(box.tl() - Point(margin, margin), box.br() + Point(margin, margin)) &
+                                         whole;
+    const Matx33d fromImage = view.fromImage(shown.size()) * Matx33d(1, 0, -shown.x, 0, 1, -shown.y, 0, 0, 1);
+    Mat mask(view.sizeOf(shown.size()), CV_8U, Scalar(0));
     std::vector<Point> corners;
     for (const Point2d& corner : part)
-        corners.push_back(Point(moved(view.fromImage(size()), corner)));
+        corners.push_back(Point(moved(fromImage, corner)));
     fillConvexPoly(mask, corners, Scalar(255));
-    const Mat all = view.mask(size(), mask_);
+    const Mat all = view.mask(shown.size(), mask_.empty() ? mask_ : mask_(shown));
     if (!all.empty())
         mask &= all;
-    return extract(view, angle, mask);
+    return extract(view.pixels(image_(shown)), mask, angle, 0, fromImage);
 }
 
 std::shared_ptr<const PreparedImage> ImageViews::prepared(const View& view) const
@@ -86,21 +111,23 @@ std::shared_ptr<const PreparedImage> ImageViews::prepared(const View& view) cons
     return prepared_;
 }
 
-const std::vector<Described>& ImageViews::coarse(const View& view, const std::vector<float>& angles) const
+const std::vector<Described>& ImageViews::coarse(
+        const View& view, const std::vector<float>& angles, int side) const
 {
     const std::lock_guard<std::mutex> lock(mutex_);
-    std::vector<Described>& found = coarse_[{view, angles}];
+    std::vector<Described>& found = coarse_[{view, angles, side}];
     if (!found.empty())
         return found;
-    if (base_.empty())
-    {
-        base_ = coarseView().pixels(image_);
-        baseMask_ = mask_.empty() ? Mat() : coarseView().mask(size(), mask_);
-    }
-    const Mat pixels = view.pixels(base_);
-    const Ptr<IIBDescriptorExtractor> extractor = extractorOf(COARSE_POINTS, false);
+    const View reduced = coarseView(side);
+    Mat& base = bases_[side];
+    if (base.empty())
+        base = reduced.pixels(image_);
+    const Mat pixels = view.pixels(base), mask = mask_.empty() ? Mat() : reduced.mask(size(), mask_);
+    const Ptr<IIBDescriptorExtractor> extractor =
+            extractorOf(side > COARSE_SIDE ? 0 : COARSE_POINTS, false, 0);
     std::vector<KeyPoint> keypoints, all;
-    extractor->detect(pixels, keypoints, view.mask(base_.size(), baseMask_));
+    extractor->detect(pixels, keypoints, view.mask(base.size(), mask));
+    keepStrongest(keypoints, view.fromImage(base.size()).inv());
     for (float angle : angles)
     {
         setAngle(keypoints, angle);
@@ -115,24 +142,14 @@ const std::vector<Described>& ImageViews::coarse(const View& view, const std::ve
     return found;
 }
 
-View ImageViews::coarseView() const
+View ImageViews::coarseView(int side) const
 {
-    return View::reduced(std::min(1., COARSE_SIDE / (double)std::max(image_.rows, image_.cols)));
+    return View::reduced(std::min(1., side / (double)std::max(image_.rows, image_.cols)));
 }
 
-Matx33d ImageViews::toCoarse(const View& view) const
+Matx33d ImageViews::toCoarse(const View& view, int side) const
 {
-    return view.fromImage(coarseView().sizeOf(size())) * coarseView().fromImage(size());
-}
-
-std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map, double share)
-{
-    const Point2d margin(share * image.width, share * image.height), end(image.width - 1, image.height - 1);
-    const Point2d low = -margin, high = end + margin;
-    std::vector<Point2d> corners;
-    for (const Point2d& corner : {low, Point2d(high.x, low.y), high, Point2d(low.x, high.y)})
-        corners.push_back(moved(map, corner));
-    return corners;
+    return view.fromImage(coarseView(side).sizeOf(size())) * coarseView(side).fromImage(size());
 }
 
 std::vector<DMatch> matchesOf(const DescribedView& first, const DescribedView& second)

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <tuple>
 
 #include "opencv2/iib.hpp"
 #include "opencv2/iib/detail/prepared_image.hpp"
@@ -44,7 +45,7 @@ public:
     //! A view with upright features; cached.
     std::shared_ptr<const DescribedView> described(const View& view) const;
 
-    /** A view of a part of the image with rotated features; not cached.
+    /** A part of a view, with rotated features; not cached.
     @param angle of all features, degrees.
     @param part corners of a convex part, pixels of the image. */
     std::shared_ptr<const DescribedView> described(
@@ -53,29 +54,31 @@ public:
     //! A view prepared for refinement; that of the image itself is cached.
     std::shared_ptr<const PreparedImage> prepared(const View& view) const;
 
-    //! The strongest points of a coarse view, described at each angle (degrees or -1); cached.
-    const std::vector<Described>& coarse(const View& view, const std::vector<float>& angles) const;
+    /** The strongest points of a coarse view, or of each tile of one that is larger than COARSE_SIDE, described at each angle; cached.
+    @param angles degrees, or -1.
+    @param side pixels to which the image's longer side is reduced before. */
+    const std::vector<Described>& coarse(
+            const View& view, const std::vector<float>& angles, int side = COARSE_SIDE) const;
 
-    //! From pixels of the image to pixels of coarse(view), in which large images are reduced.
-    Matx33d toCoarse(const View& view) const;
+    //! From pixels of the image to pixels of coarse().
+    Matx33d toCoarse(const View& view, int side = COARSE_SIDE) const;
+
+    static constexpr int COARSE_SIDE = 640;
 
 private:
-    std::shared_ptr<const DescribedView> extract(const View& view, float angle, const Mat& mask) const;
+    std::shared_ptr<const DescribedView> extract(
+            const Mat& pixels, const Mat& mask, float angle, int workingSize, const Matx33d& fromImage) const;
 
-    View coarseView() const;
+    View coarseView(int side) const;
 
     const Mat image_, mask_;
     const int maxFeatures_;
     mutable std::mutex mutex_;
-    mutable Mat base_, baseMask_;  //!< reduced image and mask for coarse()
+    mutable std::map<int, Mat> bases_;  //!< reduced images for coarse(), by their longer sides
     mutable std::shared_ptr<const PreparedImage> prepared_;
     mutable std::map<View, std::shared_ptr<const DescribedView>> described_;
-    mutable std::map<std::pair<View, std::vector<float>>, std::vector<Described>> coarse_;
+    mutable std::map<std::tuple<View, std::vector<float>, int>, std::vector<Described>> coarse_;
 };
-
-/** The corners of an image, with a margin, mapped to another image.
-@param map from pixels of the image to pixels of the other image. @param share of the image's size. */
-std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map, double share = .1);
 
 //! Matches two views by the recommended matcher.
 std::vector<DMatch> matchesOf(const DescribedView& first, const DescribedView& second);

@@ -13,6 +13,7 @@ namespace {
 const int LEAST_SIDE = 16;           // pixels of a view
 const double LEAST_TILT = 1.25;      // smaller tilts become one scale for both axes
 const double LEAST_SHORTENED = .95;  // larger scales become 1
+const int SMALL = 480;               // pixels of the longest side: smaller views are enlarged
 const double MOST_ENLARGED = 2;      // factor: further enlargement gives no more points
 
 Mat affine(const Matx33d& map) { return Mat(map.get_minor<2, 3>(0, 0)); }
@@ -126,14 +127,45 @@ ViewPair ViewPair::of(const Matx33d& affine)
     return pair;
 }
 
-ViewPair ViewPair::within(int least, int most, const Size& image1, const Size& image2) const
+ViewPair ViewPair::within(int most, const Size& image1, const Size& image2, const Matx33d& map) const
 {
-    const Size size1 = views[0].sizeOf(image1), size2 = views[1].sizeOf(image2);
-    const double longest = std::max({size1.width, size1.height, size2.width, size2.height});
+    const Size sizes[] = {image1, image2};
+    int longest = 1, longestPart = 1;
+    for (int i = 0; i < 2; i++)
+    {
+        const Size whole = views[i].sizeOf(sizes[i]);
+        const Matx33d fromOther = views[i].fromImage(sizes[i]) * (i ? map : map.inv());
+        const Rect part = boxOf(cornersAround(sizes[!i], fromOther, 0), whole);
+        longest = std::max({longest, whole.width, whole.height});
+        longestPart = std::max({longestPart, part.width, part.height});
+    }
+    const double shown = std::max(longestPart, std::min(longest, WORKING_SIZE));
     ViewPair pair = *this;
     for (View& view : pair.views)
-        view.scales *= std::min(std::clamp(least / longest, 1., MOST_ENLARGED), most / longest);
+        view.scales *= std::min(std::clamp((double)SMALL / longest, 1., MOST_ENLARGED), most / shown);
     return pair;
+}
+
+std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map, double share)
+{
+    const Point2d margin(share * image.width, share * image.height), end(image.width - 1, image.height - 1);
+    const Point2d low = -margin, high = end + margin;
+    std::vector<Point2d> corners;
+    for (const Point2d& corner : {low, Point2d(high.x, low.y), high, Point2d(low.x, high.y)})
+        corners.push_back(moved(map, corner));
+    return corners;
+}
+
+Rect boxOf(const std::vector<Point2d>& points, const Size& image)
+{
+    Point2d low(image.width, image.height), high;
+    for (const Point2d& point : points)
+    {
+        low = {std::min(low.x, point.x), std::min(low.y, point.y)};
+        high = {std::max(high.x, point.x), std::max(high.y, point.y)};
+    }
+    const Rect2d whole(0, 0, image.width, image.height);
+    return Rect(Rect2d(low, high) & whole);
 }
 
 Matx33d affineAt(const Matx33d& transform, const Point2d& point)
@@ -159,6 +191,16 @@ bool haveSimilarViews(const Matx33d& map, const Matx33d& other)
     SVD::compute(between.get_minor<2, 2>(0, 0), scales, SVD::NO_UV);
     return scales[0] < MOST_SCALE && scales[1] > 1 / MOST_SCALE &&
            std::abs(std::atan2(turn(1, 0), turn(0, 0))) < MOST_TURN;
+}
+
+bool showSameParts(const Matx33d& map, const Matx33d& other, const Size& image)
+{
+    const double margin = .1 * std::max(image.width, image.height);  // as cornersAround() leaves
+    for (const Point2d& corner : cornersAround(image, map * other.inv(), 0))
+        if (!Rect2d(Point2d(-margin, -margin), Point2d(image.width + margin, image.height + margin))
+                        .contains(corner))
+            return false;
+    return true;
 }
 
 }  // namespace cv::iib

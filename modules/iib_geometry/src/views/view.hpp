@@ -5,6 +5,9 @@
 
 namespace cv::iib {
 
+//! Pixels of the longer side at which images are matched, as HessianDetector has it.
+const int WORKING_SIZE = 1024;
+
 /** A simulated view from farther away or from the side: the image is rotated, then scaled along both axes (ASIFT; Morel
 and Yu 2009, section 2). */
 struct View
@@ -46,10 +49,18 @@ struct ViewPair
     @param map from pixels of image 1 to pixels of image 2. */
     static ViewPair of(const Matx33d& map);
 
-    //! The pair reduced to a longest side of `most` pixels, or enlarged up to twice towards `least` pixels to get more
-    //! points.
-    ViewPair within(int least, int most, const Size& image1, const Size& image2) const;
+    /** The pair reduced, so that a view or the part of it that both images show has a longest side of `most` pixels, or enlarged up to twice
+    towards SMALL to get more points.
+    @param map as in of(). */
+    ViewPair within(int most, const Size& image1, const Size& image2, const Matx33d& map) const;
 };
+
+/** The corners of an image, with a margin, mapped to another image.
+@param map from pixels of the image to pixels of the other image. @param share of the image's size. */
+std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map, double share = .1);
+
+//! The pixels of an image around some points.
+Rect boxOf(const std::vector<Point2d>& points, const Size& image);
 
 //! The affine map that approximates a transform at a point.
 Matx33d affineAt(const Matx33d& transform, const Point2d& point);
@@ -62,5 +73,8 @@ constexpr double MOST_TURN = 8 * CV_PI / 180, MOST_SCALE = 1.2;
 
 //! Whether the views of two maps are so similar that images match equally well in both.
 bool haveSimilarViews(const Matx33d& map, const Matx33d& other);
+
+//! Whether two maps, from a reference to an image of some size, place the image at about the same part of the reference.
+bool showSameParts(const Matx33d& map, const Matx33d& other, const Size& image);
 
 }  // namespace cv::iib

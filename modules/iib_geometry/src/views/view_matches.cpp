@@ -17,7 +17,6 @@ const int MOST_IMPROVED = 2;      // rounds
 const double THRESHOLD = 1.5;     // pixels from the epipolar line, or from the point mapped by the homography
 const double CONFIDENCE = .9999;
 const int MOST_TRIALS = 10000;
-const int SMALL = 480, WORKING = 1024;  // pixels of the longest side of a view
 
 Points placesOf(const Mat& points, const std::vector<uchar>& marks)
 {
@@ -147,7 +146,7 @@ ViewMatches matchTwoViews(const DescribedView& first, const DescribedView& secon
 //! Matches the images in the views of a map.
 ViewMatches matchInViewsOf(const ImageViews& first, const ImageViews& second, const Matx33d& map)
 {
-    const ViewPair pair = ViewPair::of(map).within(SMALL, WORKING, first.size(), second.size());
+    const ViewPair pair = ViewPair::of(map).within(WORKING_SIZE, first.size(), second.size(), map);
     return matchTwoViews(*first.described(pair.views[0], -1, cornersAround(second.size(), map.inv())),
             *second.described(pair.views[1], (float)pair.angle, cornersAround(first.size(), map)), false);
 }
@@ -171,12 +170,10 @@ ViewMatches matchInSomeViews(const ImageViews& first, const ImageViews& second, 
 {
     ViewMatches best = matchTwoViews(*first.described(View()), *second.described(View()), true);
     if (best.isDecisive())
-        improve(first, second, Matx33d::eye(), best);
+        improve(first, second, mapOfWholeImages(first, second), best);
     if (best.isDecisive())
         return best;
     const int tried = searchViews(first, second, maxTilt, [&](const ViewCandidate& candidate, int) {
-        if (haveSimilarViews(candidate.map, Matx33d::eye()))  // matched before the search
-            return false;
         ViewMatches found = matchInViewsOf(first, second, candidate.map);
         if (found.isDecisive())
             improve(first, second, candidate.map, found);

@@ -16,6 +16,8 @@ const double TOLERANCE = .4;   // relative error of displacements, since views a
 const int IMMEDIATE = 30;      // matches: support with which a candidate is tried at once
 const int LEAST = 4;           // matches: support with which a candidate may be tried after the search
 const int MOST_TRIED = 6;      // of candidates after the search
+const int LARGEST = 4096;      // pixels: longer side of an image, during the search
+const double MUCH_LARGER = 1.5;
 
 //! Pairs of views to compare, in this order.
 std::vector<std::pair<View, View>> pairsOf(double maxTilt)
@@ -49,9 +51,32 @@ Points placesOf(const std::vector<KeyPoint>& keypoints, const std::vector<DMatch
     return places;
 }
 
+int longerOf(const ImageViews& image) { return std::max(image.size().width, image.size().height); }
+
+//! An image whose longer side is reduced to some pixels.
+struct SearchedImage
+{
+    const ImageViews& image;
+    int side;
+
+    const std::vector<Described>& coarse(const View& view, const std::vector<float>& angles) const
+    {
+        return image.coarse(view, angles, side);
+    }
+    Matx33d toCoarse(const View& view) const { return image.toCoarse(view, side); }
+};
+
+//! An image whose pixels are as large as those of the other one in an ordinary search, if that is the smaller one.
+SearchedImage atPixelsOf(const ImageViews& other, const ImageViews& image)
+{
+    const double scale = ImageViews::COARSE_SIDE / (double)std::min(longerOf(other), longerOf(image));
+    return {image,
+            std::clamp(cvRound(longerOf(image) * std::min(scale, 1.)), ImageViews::COARSE_SIDE, LARGEST)};
+}
+
 //! The map with the most support over all rotations of two views.
-ViewCandidate compare(const ImageViews& first, const View& view1, const ImageViews& second, const View& view2,
-        const HierarchicalMatcher& matcher)
+ViewCandidate compare(const SearchedImage& first, const View& view1, const SearchedImage& second,
+        const View& view2, const HierarchicalMatcher& matcher)
 {
     const std::vector<Described>&features1 = first.coarse(view1, FIRST_ANGLES),
           &features2 = second.coarse(view2, SECOND_ANGLES);
@@ -75,30 +100,63 @@ ViewCandidate compare(const ImageViews& first, const View& view1, const ImageVie
     return best;
 }
 
-}  // namespace
-
-int searchViews(const ImageViews& first, const ImageViews& second, double maxTilt,
-        const std::function<bool(const ViewCandidate&, int)>& tryCandidate)
+//! Tries candidates until one ends the search.
+bool search(const SearchedImage& first, const SearchedImage& second, double maxTilt,
+        const std::function<bool(const ViewCandidate&, int)>& tryCandidate, int& tried)
 {
-    if (first.size().empty() || second.size().empty())
-        return 0;
     const Ptr<HierarchicalMatcher> matcher = HierarchicalMatcher::create();
     matcher->setCrossCheck(true);
+    // A larger image has more places.
+    const int rotations = int(FIRST_ANGLES.size() * SECOND_ANGLES.size()) *
+                          cvRound(square(std::max({first.side, second.side, ImageViews::COARSE_SIDE}) /
+                                         (double)ImageViews::COARSE_SIDE));
+    const bool areWhole = std::max(longerOf(first.image), longerOf(second.image)) <= WORKING_SIZE;
+    const auto wasTried = [&](const ViewCandidate& candidate) {  // before the search
+        return areWhole && haveSimilarViews(candidate.map, Matx33d::eye());
+    };
     std::vector<ViewCandidate> others;
-    int tried = 0;
     for (const auto& pair : pairsOf(maxTilt))
     {
         const ViewCandidate candidate = compare(first, pair.first, second, pair.second, *matcher);
-        tried += int(FIRST_ANGLES.size() * SECOND_ANGLES.size());
+        tried += rotations;
+        if (wasTried(candidate))
+            continue;
         if (candidate.support >= IMMEDIATE && tryCandidate(candidate, tried))
-            return tried;
+            return true;
         if (candidate.support >= LEAST && candidate.support < IMMEDIATE)
             others.push_back(candidate);
     }
     std::stable_sort(others.begin(), others.end());
     for (int k = 0; k < std::min((int)others.size(), MOST_TRIED); k++)
         if (tryCandidate(others[k], tried))
-            break;
+            return true;
+    return false;
+}
+
+}  // namespace
+
+bool isMuchLarger(const ImageViews& first, const ImageViews& second)
+{
+    return std::max(atPixelsOf(second, first).side, atPixelsOf(first, second).side) >
+           MUCH_LARGER * ImageViews::COARSE_SIDE;
+}
+
+Matx33d mapOfWholeImages(const ImageViews& first, const ImageViews& second)
+{
+    const double scale = isMuchLarger(first, second) ? longerOf(second) / (double)longerOf(first) : 1;
+    return Matx33d::diag({scale, scale, 1});
+}
+
+int searchViews(const ImageViews& first, const ImageViews& second, double maxTilt,
+        const std::function<bool(const ViewCandidate&, int)>& tryCandidate)
+{
+    int tried = 0;
+    if (first.size().empty() || second.size().empty())
+        return tried;
+    if (isMuchLarger(first, second) &&
+            search(atPixelsOf(second, first), atPixelsOf(first, second), maxTilt, tryCandidate, tried))
+        return tried;
+    search({first, ImageViews::COARSE_SIDE}, {second, ImageViews::COARSE_SIDE}, maxTilt, tryCandidate, tried);
     return tried;
 }
 

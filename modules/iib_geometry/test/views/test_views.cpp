@@ -119,6 +119,32 @@ TEST(Views, align_reduced_and_tilted_images)
 }
 
 // Squared errors over variances are about one along each axis, whatever the view.
+TEST(Views, find_a_small_picture_on_a_large_map)
+{
+    const Size large(2600, 1800);
+    Mat map = spots(3, 22000, large), other = spots(4, 700, SIZE);
+    GaussianBlur(map, map, Size(), .8);
+    for (const Change& change : {Change{"as it is", 1, 0, 1, 300}, Change{"rotated", 1, 130, 1, 300},
+                 Change{"from nearer", 1.4, 70, 1, 150}, Change{"from farther", .6, -60, 1.3, 400}})
+    {
+        const Rect part(1700, 1100, cvRound(SIZE.width / change.scale), cvRound(SIZE.height / change.scale));
+        Matx33d truth;
+        const Mat picture = change.of(map(part), truth);
+        truth = truth * Matx33d(1, 0, -part.x, 0, 1, -part.y, 0, 0, 1);
+        Mat points1, points2;
+        EXPECT_TRUE(matchViews(map, picture, points1, points2)) << change.name;
+        EXPECT_GE(countOfRight(points1, points2, truth), change.least) << change.name;
+        EXPECT_TRUE(matchViews(picture, map, points2, points1)) << change.name;
+        EXPECT_GE(countOfRight(points1, points2, truth), change.least) << change.name;
+        const Aligned result(map, picture, ALIGN_HOMOGRAPHY);
+        ASSERT_TRUE(result.found) << change.name << ": " << result.reason;
+        EXPECT_LT(result.cornerError(truth.inv()), 1) << change.name;
+        EXPECT_GE(result.matches.rows, change.least) << change.name;
+    }
+    EXPECT_FALSE(matchViews(map, other, noArray(), noArray()));
+    EXPECT_FALSE(Aligned(map, other, ALIGN_HOMOGRAPHY).found);
+}
+
 TEST(Views, covariances_are_of_pixels_of_the_image)
 {
     Matx33d truth;
