@@ -71,7 +71,7 @@ class Options:
     def _settings(self) -> dict[str, Any]:
         """The settings that a database depends on, equal for equal meaning. Masks are part of the images' stamps."""
         return {**vars(self), **vars(self.features), 'features': None, 'mask': None, 'pairs': os.path.basename(self.pairs), 'camera': None,
-                'camera_of': sorted(f'{folder}={camera}' for folder, camera in self._cameras())}
+                'camera_of': None, 'cameras': sorted(f'{folder}={camera}'.lstrip('=') for folder, camera in self._cameras())}
 
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
