@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// findRelativePose, logFalseAlarms and the fits of alignImages with any matches: repeated, collinear, huge, tiny or
-// none. Expects a cv::Exception for invalid arguments, otherwise a reason, or a rotation, a direction and a covariance.
+// findRelativePose, with covariances too, logFalseAlarms and the fits of alignImages with any matches: repeated,
+// collinear, huge, tiny or none. Expects a cv::Exception for invalid arguments, otherwise a reason, or a rotation, a
+// direction and a covariance.
 
 #include "byte_source.hpp"
 #include "pose/planar_problem.hpp"
@@ -62,7 +63,8 @@ bool arePoints(const Mat& points)
     return checkRange(points, true, nullptr, -FARTHEST_POINT, FARTHEST_POINT);
 }
 
-void checkPose(ByteSource& in, const Mat& first, const Mat& second, bool valid)
+void checkPose(
+        ByteSource& in, const Mat& first, const Mat& second, bool valid, const Mat& covariances = Mat())
 {
     const double focal = drawNumber(in, in.flag() ? 500 : std::pow(10., in.between(-3, 6))),
                  scale = in.flag() ? 0 : drawNumber(in, in.between(0, 40) / 8.);
@@ -72,7 +74,7 @@ void checkPose(ByteSource& in, const Mat& first, const Mat& second, bool valid)
     String reason;
     bool found = false;
     const bool thrown = refused([&] {
-        found = findRelativePose(first, second, K, K, R, t, inliers, scale, covariance, &reason);
+        found = findRelativePose(first, second, K, K, R, t, inliers, scale, covariance, &reason, covariances);
     });
     FUZZ_CHECK(thrown == !valid);
     if (thrown)
@@ -130,4 +132,11 @@ FUZZ_TARGET
     if (valid)
         checkTransform(
                 in, pointsOf(first, "checkTransform", "first"), pointsOf(second, "checkTransform", "second"));
+    if (in.rarely(4))
+    {
+        Mat_<double> covariances(first.rows, in.rarely(16) ? 2 : 3);
+        for (double& each : covariances)
+            each = drawNumber(in, in.between(0, 40) / 40.);
+        checkPose(in, first, second, valid && (covariances.empty() || covariances.cols == 3), covariances);
+    }
 }

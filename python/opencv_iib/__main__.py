@@ -34,8 +34,9 @@ from opencv_iib.localization.imu import parse_pose
 from opencv_iib.match_list import match_list
 from opencv_iib.measure import match_images
 
-STATUS = ('status: 0; 1 for an error; 2 for a mistake in the command line; 3 where nothing was found (no match, no pose, no image aligned or '
-          'localized); 4 where only some images or pairs were found, or map or colmap left some out; 130 after Ctrl-C')
+STATUS = ('status: 0; 1 for an error, such as a damaged file or an output that exists; 2 for a mistake in the command line, such as a folder without '
+          'images; 3 where nothing was found (no match, no pose, no image aligned or localized); 4 where only some images or pairs were found, or map or '
+          'colmap left some out; 130 after Ctrl-C')
 SOME_FOUND, NONE_FOUND, MISTAKE = 4, 3, 2
 CAMERA = 'MODEL,WIDTH,HEIGHT,PARAMS'
 Add = Callable[..., Callable[..., Any]]  #: adds a command, see _parser
@@ -135,8 +136,11 @@ def _match(arguments: argparse.Namespace) -> int:
     pair, options = vars(arguments).pop('pair'), _options_of(FeatureOptions, arguments)
     if arguments.pairs is not None:
         cameras, picture = vars(arguments).pop('cameras'), vars(arguments).pop('picture')
-        if pair or picture is not None or len(cameras) > 1 or arguments.images is None or arguments.out == 'matches.csv':
-            raise InvalidOption('--pairs LIST goes with --images FOLDER, --out and one --camera, and without images and --picture')
+        for wrong, rule in ((arguments.images is None, 'needs --images FOLDER'), (arguments.out == 'matches.csv', 'needs --out, a folder or a file in .h5 or .hdf5'),
+                            (pair, 'takes no other images'), (picture is not None, 'goes without --picture'),
+                            (len(cameras) > 1, 'takes one --camera')):
+            if wrong:
+                raise InvalidOption(f'--pairs LIST {rule}')
         found, count = _call(match_list, arguments, camera=cameras[0] if cameras else None, options=options)
         _say(f'{arguments.out}: {found} of {count} pairs show the same')
         return _share(found, count)

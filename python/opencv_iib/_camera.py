@@ -68,6 +68,9 @@ class Camera(_core.Camera):
     def __reduce__(self) -> Any:
         return Camera, self._values()
 
+    def __str__(self) -> str:
+        return ','.join([self.model, *(f'{value:.15g}' for value in (self.width, self.height, *self.params))])
+
     def __repr__(self) -> str:
         return f'Camera({self.model!r}, {self.width}, {self.height}, {self.params})'
 

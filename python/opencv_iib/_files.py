@@ -175,19 +175,18 @@ class Results(AbstractContextManager['Results']):
         self.folder, self._command = os.path.realpath(out), command
         self.written: set[str] = set()  #: names of files, with '/'
         self._adding, self._record = threading.Lock(), os.path.join(self.folder, RECORD)
-        by, listed = None, set[str]()
+        by, listed = None, list[str]()
         with suppress(OSError, ValueError), open(self._record, encoding='ascii') as file:
-            by, *names = [json.loads(line) for line in file if line.endswith('\n')]  # the last one may be cut off
-            listed = set(names)
-        if by not in (None, command):
-            raise FileExistsError(f'{out} holds results of {by}: choose another folder')
-        whole = listed | {RECORD}
+            by, *listed = [json.loads(line) for line in file if line.endswith('\n')]  # the last one may be cut off
+        if by not in (None, command) or not all(isinstance(name, str) for name in listed):  # version 0.3 wrote lists
+            raise FileExistsError(f'{out} holds results of {by}{" of an earlier version" * (by == command)}: choose another folder')
+        whole = {RECORD, *listed}
         own = {name for name in _files_below(self.folder) if PART.sub('', name) in whole}
         try:
             self._lock = _core.OutputFolder(self.folder, list(map(os.fsencode, own)))
         except _core.error as e:
             raise FileExistsError(str(e)) from None
-        self.old = own & listed  #: files of earlier calls
+        self.old = own.intersection(listed)  #: files of earlier calls
         self.remove(own - whole)  # unfinished files of killed processes
         self._list(self.old)
 

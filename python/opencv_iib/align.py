@@ -117,7 +117,7 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     if len(paths) == len(series):
         series = [reference, *series]
     if not paths:
-        raise ValueError(f'no image to align but the reference, {reference}')
+        raise InvalidOption(f'no image to align but the reference, {reference}')
     check_folder(out, (*paths, *masks.check([os.path.basename(path) for path in (reference, *paths)])))
     work = _Work(reference, options, masks, log)
     with Results(out, 'align') as results:

@@ -80,7 +80,7 @@ class Align(Aligned):
         self.assertIn('a%26b_2.png', page)
         self.assertIn('more/a&amp;b.png, aligned', page)
         self.assertLess(page.index('name="viewport"'), page.index('loading="lazy"'))
-        self.check_error('but the reference', 'align', *paths[:1] * 2, '--out', out)
+        self.check_mistake('but the reference', 'align', *paths[:1] * 2, '--out', out)
         self.assertEqual(run_command('align', *paths[:2], '--out', self.folder / 'new', '--model', 'similarity')[0], 0)
         self.assertEqual(run_command('align', paths[0], self.write('t.png', texture(300, 200, seed=9)), '--out', self.folder / 'n')[0], 3)
 

@@ -220,7 +220,10 @@ class Runs(Collection):
         camera = '{},400,300,690.10,690,200,150'
         self.build(camera_of=['more/=' + camera.format('pinhole')])
         self.assertEqual(self.grow([], camera_of=['./more=' + camera.format('PINHOLE').replace('690.10', '690.1')])[1], 0)
-        with self.assertRaisesRegex(SettingsChanged, r"settings \(camera_of \[.more/=Camera.*\], now \[\], ratio 0.92, now 0.8\): use them again"):
+        with self.assertRaisesRegex(SettingsChanged,
+                                    r'settings \(cameras more/=PINHOLE,400,300,690.1,690,200,150, now none, ratio 0.92, now 0.8, search on, now off\): use them'):
+            self.build(ratio=.8, search=False)
+        with mock.patch('opencv_iib.__version__', '0.3'), self.assertRaisesRegex(SettingsChanged, r'settings \(version \d.*, now 0.3\): use them'):
             self.build(ratio=.8)
 
     def test_only_images_of_new_pairs_are_described_again(self):

@@ -107,6 +107,9 @@ class Files(InFolder):
         self.expect_precious(*mine, 'out/mine', 'out/sub/mine')
         with self.assertRaisesRegex(FileExistsError, 'out holds results of measure: choose another folder'):
             self.results('c', command='align')
+        (self.folder / 'out' / RECORD).write_text('"measure"\n["c", "4-1700000000"]\n')  # as version 0.3 wrote it
+        with self.assertRaisesRegex(FileExistsError, 'out holds results of measure of an earlier version: choose another folder'):
+            self.results('c')
 
     def test_a_killed_run_leaves_nothing_in_the_way(self):
         self.results('a')

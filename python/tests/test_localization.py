@@ -83,6 +83,7 @@ class Localization(OnWall):
         found, nothing = localizer.localize(self.grey(), camera), localizer.localize(np.zeros((HEIGHT, WIDTH), np.uint8), camera)
         self.assertEqual((camera, {camera}), (Camera.parse(CAMERA.lower()), set(localizer.cameras)))
         self.assertNotEqual(camera, Camera('PINHOLE', WIDTH, HEIGHT, (300, 300, 160, 121)))
+        self.assertEqual(str(camera), 'PINHOLE,320,240,300,300,160,120')
         self.assertEqual((repr(camera), eval(repr(camera))), ("Camera('PINHOLE', 320, 240, [300.0, 300.0, 160.0, 120.0])", camera))
         self.assertTrue(found.found and not nothing.found)
         self.assertNotEqual(found, nothing)
@@ -203,7 +204,7 @@ class Localization(OnWall):
         localize = '--map', self.map, '--images', self.dark, '--out', out
         self.check_error('is no map', 'localize', '--map', self.images, *localize[2:])
         self.check_mistake('(map has no lines|lines need OpenCV)', 'localize', *localize, '--lines')
-        self.check_error('no images below', 'localize', '--map', self.map, '--images', empty, '--out', out)
+        self.check_mistake('no images below', 'localize', '--map', self.map, '--images', empty, '--out', out)
         mapping = 'map', '--images', self.images, '--out', out, '--model'
         self.check_error('model', *mapping, self.images)
         wrong = self.path('model')

@@ -69,13 +69,13 @@ class Imu(Options):
         self.assertEqual((status, '5 of 6 images have a pose' in out), (4, True))
         self.assertRegex(errors, 'the readings of the IMU contradict the images, whose poses stay as they are')
         self.image('08.5.png')
-        self.check_error('08.5.png and 8.500000.png have one time', *self.command, '--imu', imu)
+        self.check_mistake('08.5.png and 8.500000.png have one time', *self.command, '--imu', imu)
         shutil.rmtree(self.images)
         self.images.mkdir()
         self.image('1500000000000000.png')  # microseconds
-        self.check_error("are not those of the IMU's readings", *self.command, '--imu', imu)
+        self.check_mistake("are not those of the IMU's readings", *self.command, '--imu', imu)
         self.image('left.png')
-        self.check_error('left.png: with --imu the images must be named by their times', *self.command, '--imu', imu)
+        self.check_mistake('left.png: with --imu the images must be named by their times', *self.command, '--imu', imu)
 
     def test_readings(self):
         path = self.write('#timestamp [ns],w_x\n0,0.1,-0.2,0.3,1,2,9.81\r\n5000000,0,0,0,1e-3,0,0\n')

@@ -149,7 +149,7 @@ class Maps(OnWall):
         build_with((297, 298, 300, 301, 302, 303))
         status, errors = self.localize(out, map=made)
         self.assertEqual((status, errors.count('the middle one of 6 cameras of the map, which agree')), (0, 1))
-        self.assertIn('[301.0, 160.0, 120.0', errors)
+        self.assertIn('SIMPLE_RADIAL,320,240,301,160,120,', errors)
         message = []
         list(runs.localize_stream(made, [os.path.join(self.dark, name) for name in os.listdir(self.dark)], log=message.append))
         self.assertRegex('|'.join(message), r'^[^|]*the middle one of 6 cameras of the map, which agree$')

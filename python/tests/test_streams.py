@@ -187,6 +187,7 @@ class Mistakes(InFolder):
         self.addCleanup(os.chdir, os.getcwd())
         os.chdir(self.folder)
         os.makedirs('images/c')
+        os.makedirs('nothing')
         for name in ('a.png', 'images/a.png', 'images/b.png', 'images/c/a.png', 'images/c-a.png'):
             cv2.imwrite(name, texture(60, 60))
         for name, text in (('pairs', 'a.png b.png\n'), ('empty', ''), ('itself', 'a.png a.png\n'), ('unknown', 'no image\n'), ('alike', 'c/a.png b.png\nc-a.png b.png\n'), ('imu.csv', '1,0,0,0,0,0,9.81\n')):
@@ -223,7 +224,17 @@ class Mistakes(InFolder):
                 'a.png is paired with itself': f'{pairs} itself --out out, colmap images x.db --pairs itself',
                 'no image is called no or image': f'{pairs} unknown --out out, colmap images x.db --pairs unknown',
                 '2 pairs would write c-a.png/b.png, since / becomes -: rename an image': f'{pairs} alike --out out',
-                'goes with': f'match --pairs pairs, {pairs} pairs, {pairs} pairs --out out a.png, {pairs} pairs --out out --picture x',
+                'needs --images FOLDER': 'match --pairs pairs, match --pairs pairs --out out',
+                'needs --out, a folder or': f'{pairs} pairs',
+                'takes no other images': f'{pairs} pairs --out out a.png',
+                'takes one --camera': f'{pairs} pairs --out out --camera PINHOLE;9;9;5;5;4;4 --camera PINHOLE;9;9;5;5;4;4',
+                'goes without --picture': f'{pairs} pairs --out out --picture x',
+                'goes with imu alone': f'{localize} out --imu-from-camera 1;0;0;0;0;0;1',
+                'without focal and camera_model': 'colmap images x.db --focal 5 --camera PINHOLE;9;9;5;5;4;4, '
+                                                  'colmap images x.db --camera-model opencv --camera PINHOLE;9;9;5;5;4;4',
+                'no images below': 'colmap nothing x.db, localize --map images --images nothing --out out, update --map images --images nothing',
+                'but the reference': 'align a.png a.png nothing --out out',
+                'a place by GPS': 'colmap images x.db --pairs gps',
                 '60 x 60': 'match a.png a.png --camera PINHOLE;9;9;400;400;4;4',
                 'its camera has 9 x 9': f'{pairs} pairs --out out --camera PINHOLE;9;9;5;5;4;4'}.items():
             for command in commands.split(', '):

@@ -64,9 +64,17 @@ class SettingsChanged(ValueError):
         super().__init__(f'{path} was begun with other settings ({differences}): use them again, or start a new database with force (--force)')
 
 
+def _text(value: Any) -> str:
+    """A setting as users write it."""
+    if isinstance(value, bool):
+        return 'on' if value else 'off'
+    return ' '.join(value) or 'none' if isinstance(value, list) else str(value)
+
+
 def check_settings(path: str, old: dict[str, Any], new: dict[str, Any]) -> None:
     """:raises SettingsChanged: if they differ."""
-    different = [f'{name} {old.get(name)}, now {new.get(name)}' for name in {**old, **new} if old.get(name) != new.get(name)]
+    known = {**old, **new} if old.get('version') == new.get('version') else ['version']  # versions have different settings
+    different = [f'{name} {_text(old.get(name))}, now {_text(new.get(name))}' for name in known if old.get(name) != new.get(name)]
     if different:
         raise SettingsChanged(path, ', '.join(different))
 

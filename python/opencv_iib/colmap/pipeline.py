@@ -71,7 +71,7 @@ class Options:
     def _settings(self) -> dict[str, Any]:
         """The settings that a database depends on, equal for equal meaning. Masks are part of the images' stamps."""
         return {**vars(self), **vars(self.features), 'features': None, 'mask': None, 'pairs': os.path.basename(self.pairs), 'camera': None,
-                'camera_of': sorted(f'{folder}={camera}' for folder, camera in self._cameras())}
+                'camera_of': None, 'cameras': sorted(f'{folder}={camera}'.lstrip('=') for folder, camera in self._cameras())}
 
     def check(self) -> None:
         """:raises InvalidOption: naming what is wrong, and what there is."""
@@ -79,6 +79,8 @@ class Options:
         if not 0 <= number(self.focal, 'focal') < float('inf'):
             raise InvalidOption(f'focal is {self.focal}: it must be a number of pixels, or 0')
         check_choice(self.camera_model, 'camera model', CAMERA_MODELS)
+        if self.camera is not None and (self.focal or self.camera_model != Options.camera_model):
+            raise InvalidOption('camera has a model and a focal length: give it without focal and camera_model')
         for text in sequence(self.camera_of, 'camera_of', "'FOLDER=MODEL,WIDTH,HEIGHT,PARAMS'"):
             if '=' not in str(text):
                 raise InvalidOption(f'camera_of is {text}: it must be FOLDER=MODEL,WIDTH,HEIGHT,PARAMS')
@@ -253,18 +255,18 @@ def build_database(images: Path, database: Path, options: Options = Options(), f
     check_is_folder(images)
     names = find_images(images, log)
     if not names:
-        raise ValueError(f'no images below {images}')
+        raise InvalidOption(f'no images below {images}')
     left_out = 0  # lines of the list of pairs
     if options.pairs not in PAIRS:
         left_out = check_list(options.pairs, {name: number for number, name in enumerate(names)}, log)[1]
     if options.pairs == 'gps' and all(place is None for place in gps_places(images, names)):
-        raise ValueError(f'no image below {images} has a place by GPS in its EXIF data')
+        raise InvalidOption(f'no image below {images} has a place by GPS in its EXIF data')
     unlistable, verify = [name for name in names if not is_listable(name)], options.verify
     if verify == 'auto':
         verify = 'magsac' if unlistable or shutil.which('colmap') is None else 'colmap'
     if verify == 'colmap' and unlistable:
-        raise ValueError(f'{unlistable[0]}: matches_importer reads no names with blanks or a leading #; rename it, or '
-                         'verify by magsac (--verify)')
+        raise InvalidOption(f'{unlistable[0]}: matches_importer reads no names with blanks or a leading #; rename it, or '
+                            'verify by magsac (--verify)')
     for folder, _ in options._cameras():
         if not any(name.startswith(folder) for name in names):
             raise InvalidOption(f'camera_of is {folder}: no image is below {os.path.join(images, folder)}')

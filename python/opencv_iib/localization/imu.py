@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from opencv_iib import _core
-from opencv_iib._arguments import MissingFile, integers, sequence
+from opencv_iib._arguments import InvalidOption, MissingFile, integers, sequence
 from opencv_iib._arrays import as_array
 from opencv_iib.localization.localizer import Location, as_pose
 
@@ -99,19 +99,19 @@ def time_of(stem: str) -> Optional[int]:
 
 def by_time(names: Sequence[str], readings: NDArray[np.float64]) -> dict[str, int]:
     """The times of images in nanoseconds, in their order.
-    :raises ValueError: for names that are no times, equal times, or times beyond the readings."""
+    :raises InvalidOption: for names that are no times, equal times, or times beyond the readings."""
     times = []
     for name in names:
         time = time_of(os.path.splitext(name)[0])
         if time is None:
-            raise ValueError(f'{name}: with --imu the images must be named by their times, in seconds or nanoseconds')
+            raise InvalidOption(f'{name}: with --imu the images must be named by their times, in seconds or nanoseconds')
         times.append((time, name))
     ordered = sorted(times)
     for (time, name), (following, other) in zip(ordered, ordered[1:]):
         if time == following:
-            raise ValueError(f'{name} and {other} have one time')
+            raise InvalidOption(f'{name} and {other} have one time')
     if ordered[-1][0] < readings[0, 0] or ordered[0][0] > readings[-1, 0]:
-        raise ValueError(f"{ordered[0][1]}: the images' times, in seconds or nanoseconds, are not those of the IMU's readings, in nanoseconds")
+        raise InvalidOption(f"{ordered[0][1]}: the images' times, in seconds or nanoseconds, are not those of the IMU's readings, in nanoseconds")
     return {name: time for time, name in ordered}
 
 

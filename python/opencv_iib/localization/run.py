@@ -126,12 +126,12 @@ def locate(find: Find, known: Sequence[AnyCamera], folder: Path, names: Sequence
 
 
 def images_of(folder: Path, out: Path = '', log: Callable[[str], None] = note) -> list[str]:
-    """Names of the images below a folder, without those in the folder of results. :raises ValueError: if there are none."""
+    """Names of the images below a folder, without those in the folder of results. :raises InvalidOption: if there are none."""
     check_is_folder(folder)
     inside = os.path.relpath(os.path.realpath(out), os.path.realpath(folder)).replace(os.sep, '/') if out else '..'
     names = [name for name in find_images(folder, log) if not name.startswith(inside + '/')]
     if not names:
-        raise ValueError(f'no images below {folder}')
+        raise InvalidOption(f'no images below {folder}')
     return names
 
 
@@ -231,6 +231,8 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
         check_outputs([out], read)
     else:
         check_folder(out, read, ', X.csv and -')
+    if imu is None and not np.array_equal(imu_from_camera, np.eye(4)):
+        raise InvalidOption('imu_from_camera goes with imu alone: give its file (--imu)')
     if imu is not None:
         readings = read_imu(os.fspath(imu))
         times = by_time(names, readings)
