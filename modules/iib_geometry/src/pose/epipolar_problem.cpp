@@ -100,12 +100,11 @@ std::vector<int> EpipolarProblem::alikeTheirNeighbours(const std::vector<int>& m
             if (way.x > farthest * span)
                 break;
             const double way2 = way.ddot(way);
-            if (way2 > square(nearest * span) && way2 < square(farthest * span) &&
-                    change.ddot(change) < square(unlike) * way2)
-            {
-                counts[i]++;
-                counts[k]++;
-            }
+            const int alike =
+                    int(way2 > square(nearest * span)) & int(way2 < square(farthest * span)) &
+                    int(change.ddot(change) < square(unlike) * way2);  // not &&: branches take longer
+            counts[i] += alike;
+            counts[k] += alike;
         }
     order.erase(std::remove_if(order.begin(), order.end(), [&](int i) { return counts[i] < enough; }),
             order.end());
@@ -237,8 +236,8 @@ Row<EpipolarProblem::Step> EpipolarProblem::row(
         line[k] = E(k, 0) * u[0] + E(k, 1) * u[1] + E(k, 2);
     for (int k = 0; k < 2; k++)
         back[k] = E(0, k) * v[0] + E(1, k) * v[1] + E(2, k);
-    const double weightedLine[] = {weights_[0] * line[0], weights_[1] * line[1], 0},
-                 weightedBack[] = {weights_[2] * back[0], weights_[3] * back[1], 0};
+    const double weightedLine[] = {weights_[0] * line[0], weights_[1] * line[1]},
+                 weightedBack[] = {weights_[2] * back[0], weights_[3] * back[1]};
     const double length2 = weightedLine[0] * line[0] + weightedLine[1] * line[1] + weightedBack[0] * back[0] +
                            weightedBack[1] * back[1] + NOWHERE;
     const double inverse = 1 / std::sqrt(length2), r = (v[0] * line[0] + v[1] * line[1] + line[2]) * inverse;
@@ -248,8 +247,11 @@ Row<EpipolarProblem::Step> EpipolarProblem::row(
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++)
         {
-            const double byE =
-                    (v[a] * u[b] - pull * (weightedLine[a] * u[b] + weightedBack[b] * v[a])) * inverse;
+            const double pulled = a < 2 && b < 2 ? weightedLine[a] * u[b] + weightedBack[b] * v[a]
+                                  : a < 2        ? weightedLine[a]
+                                  : b < 2        ? weightedBack[b]
+                                                 : 0;
+            const double byE = (v[a] * u[b] - pull * pulled) * inverse;
             for (int k = 0; k < STEPS; k++)  // contiguous, so that compilers vectorize the loop
                 J[k] += byE * linear.byStep[3 * a + b][k];
         }
@@ -358,6 +360,7 @@ bool EpipolarProblem::areApart(const RelativePose& pose, const RelativePose& oth
 void EpipolarProblem::linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const
 {
     rows.clear();
+    rows.reserve(size());
     const Linear linear(pose);
     const Matx33d essential = linear.E;
     const Vec4d weights = weights_;
@@ -385,6 +388,7 @@ std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
     const double more = 1 + 2 * std::sqrt(2. / std::max<double>((double)rows.size(), 1));
     const Linear linear(pose);
     std::vector<Square<Step>> all;
+    all.reserve(rows.size());
     for (const Row<Step>& r : rows)
     {
         Square<Step> noise = Square<Step>::zeros();
