@@ -236,8 +236,8 @@ Row<EpipolarProblem::Step> EpipolarProblem::row(
         line[k] = E(k, 0) * u[0] + E(k, 1) * u[1] + E(k, 2);
     for (int k = 0; k < 2; k++)
         back[k] = E(0, k) * v[0] + E(1, k) * v[1] + E(2, k);
-    const double weightedLine[] = {weights_[0] * line[0], weights_[1] * line[1]},
-                 weightedBack[] = {weights_[2] * back[0], weights_[3] * back[1]};
+    const double weightedLine[] = {weights_[0] * line[0], weights_[1] * line[1], 0},
+                 weightedBack[] = {weights_[2] * back[0], weights_[3] * back[1], 0};
     const double length2 = weightedLine[0] * line[0] + weightedLine[1] * line[1] + weightedBack[0] * back[0] +
                            weightedBack[1] * back[1] + NOWHERE;
     const double inverse = 1 / std::sqrt(length2), r = (v[0] * line[0] + v[1] * line[1] + line[2]) * inverse;
@@ -247,11 +247,8 @@ Row<EpipolarProblem::Step> EpipolarProblem::row(
     for (int a = 0; a < 3; a++)
         for (int b = 0; b < 3; b++)
         {
-            const double pulled = a < 2 && b < 2 ? weightedLine[a] * u[b] + weightedBack[b] * v[a]
-                                  : a < 2        ? weightedLine[a]
-                                  : b < 2        ? weightedBack[b]
-                                                 : 0;
-            const double byE = (v[a] * u[b] - pull * pulled) * inverse;
+            const double byE =
+                    (v[a] * u[b] - pull * (weightedLine[a] * u[b] + weightedBack[b] * v[a])) * inverse;
             for (int k = 0; k < STEPS; k++)  // contiguous, so that compilers vectorize the loop
                 J[k] += byE * linear.byStep[3 * a + b][k];
         }
