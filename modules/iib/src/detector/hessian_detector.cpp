@@ -22,14 +22,15 @@ template <typename T> Mat reduced(const Mat& grey, int factor)
 {
     Mat result(grey.rows / factor, grey.cols / factor, grey.type());
     parallel_for_(Range(0, result.rows), [&](const Range& range) {
-        std::vector<unsigned> sums(grey.cols);
+        const int width = grey.cols;  // a copy, so that compilers vectorize the loop
+        std::vector<unsigned> sums(width);
         for (int y = range.start; y < range.end; y++)
         {
             std::fill(sums.begin(), sums.end(), 0u);
             for (int i = 0; i < factor; i++)
             {
                 const T* const row = grey.ptr<T>(factor * y + i);
-                for (int x = 0; x < grey.cols; x++)
+                for (int x = 0; x < width; x++)
                     sums[x] += row[x];
             }
             T* const out = result.ptr<T>(y);

@@ -60,8 +60,8 @@ const char* nameOf(int model)
     return names[model];
 }
 
-FittedTransform::FittedTransform(const AlignedPoints& points, int kind)
-    : model(kind), problem(points.reference, points.image, kind), fit(robustFit(problem)),
+FittedTransform::FittedTransform(const AlignedPoints& points, int kind, int mostTrials)
+    : model(kind), problem(points.reference, points.image, kind), fit(robustFit(problem, mostTrials)),
       limit(3 * std::max(fit.scale, REFINED)), agree(within(limit, fit.squared))
 {
     agree.resize(problem.size());
@@ -121,7 +121,7 @@ std::vector<FittedTransform> fittedTransforms(const Evidence& evidence, int mode
     const AlignedPoints& points = evidence.points;
     std::vector<FittedTransform> fitted;
     FittedTransform richest(points, ALIGN_HOMOGRAPHY);
-    const bool isRich = richest.exists() && richest.isSignificant(evidence);
+    const bool isRich = model != ALIGN_HOMOGRAPHY && richest.exists() && richest.isSignificant(evidence);
     for (int kind = model == ALIGN_AUTO ? ALIGN_TRANSLATION : model; kind < ALIGN_HOMOGRAPHY; kind++)
         if (isRich && kind != model)
         {

@@ -29,7 +29,7 @@ struct FittedTransform
     Verdict::Marks agree;
 
     //! The transform with which most matches agree.
-    FittedTransform(const AlignedPoints& points, int model);
+    FittedTransform(const AlignedPoints& points, int model, int mostTrials = MANY_SAMPLES);
 
     /** A transform fitted from another one, of working pixels and of as much freedom or more.
     @param scale of the first fit, working pixels; the matches' own scale is estimated from there. */

@@ -31,13 +31,26 @@ struct Parts
 };
 
 /** The matches beside a transform by a distance, working pixels, or more, that the camera's motion explains. Where the transform has matches,
-too, the others are wrong: a letter that repeats is no camera's motion. */
-Verdict::Marks partsBeside(const FittedTransform& fitted, const Evidence& evidence, double distance)
+too, the others are wrong: a letter that repeats is no camera's motion.
+@param least places, as a share of those that agree; none are returned if they have no more. */
+Verdict::Marks partsBeside(
+        const FittedTransform& fitted, const Evidence& evidence, double distance, double least)
 {
     const AlignedPoints& points = evidence.points;
-    const Verdict::Marks moved = movedByParallax(points.reference, points.image, fitted.transform(),
-            within(std::max(2 * fitted.limit, distance), fitted.fit.squared), fitted.limit, evidence.verdict);
-    return evidence.verdict.elsewhere(moved, fitted.agree);
+    const Verdict& verdict = evidence.verdict;
+    const Verdict::Marks explained = within(std::max(2 * fitted.limit, distance), fitted.fit.squared);
+    Verdict::Marks moved = explained;
+    moved.flip();
+    for (bool byCamera : {false, true})
+    {
+        if (byCamera)
+            moved = movedByParallax(
+                    points.reference, points.image, fitted.transform(), explained, fitted.limit, verdict);
+        moved = verdict.elsewhere(moved, fitted.agree);
+        if (verdict.places(moved) <= least * verdict.places(fitted.agree))
+            return {};
+    }
+    return moved;
 }
 
 //! Whether the richer transform belongs to another part of the images, and the simple one to a place of its own.
@@ -87,17 +100,16 @@ Judgement refusedByFew(const WorkingPair& pair, std::string reason)
 //! Whether most matches agree with one similarity: a part that moved or a second plane, not a scene with depth.
 bool isOneMotion(const Verdict::Marks& moved, const Evidence& evidence)
 {
-    const int count = countOf(moved);
-    return count > 0 &&
-           FittedTransform(marked(evidence.points, moved), ALIGN_SIMILARITY).count() > LEAST_TOGETHER * count;
+    const int count = countOf(moved), trials = 150;  // enough for a similarity that most matches agree with
+    return count > 0 && FittedTransform(marked(evidence.points, moved), ALIGN_SIMILARITY, trials).count() >
+                                LEAST_TOGETHER * count;
 }
 
 //! Matches beside the transform: the camera moved, or a part of the scene did.
 void judgeMotion(const FittedTransform& fitted, const Evidence& evidence, Judgement& judgement)
 {
-    const Verdict& verdict = evidence.verdict;
-    const Verdict::Marks moved = partsBeside(fitted, evidence, LEAST_PARALLAX);
-    if (verdict.places(moved) <= MOST_PARALLAX * verdict.places(fitted.agree))
+    const Verdict::Marks moved = partsBeside(fitted, evidence, LEAST_PARALLAX, MOST_PARALLAX);
+    if (moved.empty())
         return;
     if (isOneMotion(moved, evidence))
         judgement.note = format(
@@ -185,9 +197,8 @@ Judgement judge(
 double deviationBeside(const FittedTransform& fitted, const Evidence& evidence)
 {
     const Verdict& verdict = evidence.verdict;
-    Verdict::Marks moved = partsBeside(fitted, evidence, 0), far = moved;
-    const auto isFew = [&] { return verdict.places(moved) <= LEAST_BESIDE * verdict.places(fitted.agree); };
-    if (isFew())
+    Verdict::Marks moved = partsBeside(fitted, evidence, 0, LEAST_BESIDE), far = moved;
+    if (moved.empty())
         return 0;
     for (size_t i = 0; i < moved.size(); i++)
         far[i] = moved[i] && fitted.fit.squared[i] >= square(LEAST_PARALLAX);
@@ -199,7 +210,7 @@ double deviationBeside(const FittedTransform& fitted, const Evidence& evidence)
         if (moved[i])
             squares.push_back(fitted.fit.squared[i]);
     }
-    if (isFew())
+    if (verdict.places(moved) <= LEAST_BESIDE * verdict.places(fitted.agree))
         return 0;
     const auto most = squares.begin() + squares.size() * 2 / 3;  // wrong matches are farther
     std::nth_element(squares.begin(), most, squares.end());

@@ -18,13 +18,19 @@ bool isMark(const Mat& image, const Point2d& point)
     if (!Rect(ring, ring, image.cols - 2 * ring, image.rows - 2 * ring).contains(at))
         return false;
     std::vector<float> around;
+    around.reserve(8 * ring + 4);
     for (int k = -ring; k <= ring; k++)
         for (const Point& p : {Point(k, -ring), Point(k, ring), Point(-ring, k), Point(ring, k)})
             around.push_back(image.at<float>(at + p));
-    const Mat heights = abs(image(Rect(at.x - 3, at.y - 3, 7, 7)) - median(around));
-    double height;
-    minMaxLoc(heights(Rect(2, 2, 3, 3)), nullptr, &height);
-    return countNonZero(heights > height / 4) <= MOST_PIXELS;
+    const float middle = median(around);
+    const auto height = [&](int x, int y) { return std::abs(image.at<float>(at.y + y, at.x + x) - middle); };
+    float highest = 0;
+    for (int k = 0; k < 9; k++)
+        highest = std::max(highest, height(k % 3 - 1, k / 3 - 1));
+    int pixels = 0;
+    for (int k = 0; k < 49; k++)
+        pixels += height(k % 7 - ring, k / 7 - ring) > highest / 4;
+    return pixels <= MOST_PIXELS;
 }
 
 }  // namespace
@@ -41,14 +47,17 @@ bool areOfTheSensor(const FittedTransform& fitted, const Evidence& evidence)
     if (image.channels() > 1)
         cvtColor(image, image, image.channels() == 4 ? COLOR_BGRA2GRAY : COLOR_BGR2GRAY);
     image.convertTo(image, CV_32F);
-    double marks = 0, larger = 0, allMarks = 1, allLarger = 1;
+    const double count = (double)agreeing.reference.size();
+    double larger = 0, allMarks = 1, allLarger = 1;
     for (const Point2d& point : agreeing.reference)
-        (isMark(image, point) ? marks : larger)++;
-    if (marks < LEAST_MARKS * (marks + larger))
-        return false;
+    {
+        larger += !isMark(image, point);
+        if (count - larger < LEAST_MARKS * count)
+            return false;
+    }
     for (const KeyPoint& keypoint : evidence.points.keypoints[0])
         (isMark(image, keypoint.pt) ? allMarks : allLarger)++;
-    return larger / allLarger < MOST_LARGER * marks / allMarks;
+    return larger / allLarger < MOST_LARGER * (count - larger) / allMarks;
 }
 
 }  // namespace cv::iib

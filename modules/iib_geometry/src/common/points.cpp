@@ -47,10 +47,13 @@ Rect2d spanOf(Points points)
     Point2d least, most;
     for (double Point2d::*axis : {&Point2d::x, &Point2d::y})
     {
-        std::sort(points.begin(), points.end(),
-                [&](const Point2d& a, const Point2d& b) { return a.*axis < b.*axis; });
-        least.*axis = points[outermost].*axis;
-        most.*axis = std::max(points[count - 1 - outermost].*axis, least.*axis + 1);
+        const auto inOrder = [&](size_t k) {
+            std::nth_element(points.begin(), points.begin() + (ptrdiff_t)k, points.end(),
+                    [&](const Point2d& a, const Point2d& b) { return a.*axis < b.*axis; });
+            return points[k].*axis;
+        };
+        least.*axis = inOrder(outermost);
+        most.*axis = std::max(inOrder(count - 1 - outermost), least.*axis + 1);
     }
     return Rect2d(least, most);
 }

@@ -100,12 +100,11 @@ std::vector<int> EpipolarProblem::alikeTheirNeighbours(const std::vector<int>& m
             if (way.x > farthest * span)
                 break;
             const double way2 = way.ddot(way);
-            if (way2 > square(nearest * span) && way2 < square(farthest * span) &&
-                    change.ddot(change) < square(unlike) * way2)
-            {
-                counts[i]++;
-                counts[k]++;
-            }
+            const int alike =
+                    int(way2 > square(nearest * span)) & int(way2 < square(farthest * span)) &
+                    int(change.ddot(change) < square(unlike) * way2);  // not &&: branches take longer
+            counts[i] += alike;
+            counts[k] += alike;
         }
     order.erase(std::remove_if(order.begin(), order.end(), [&](int i) { return counts[i] < enough; }),
             order.end());
@@ -358,6 +357,7 @@ bool EpipolarProblem::areApart(const RelativePose& pose, const RelativePose& oth
 void EpipolarProblem::linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const
 {
     rows.clear();
+    rows.reserve(size());
     const Linear linear(pose);
     const Matx33d essential = linear.E;
     const Vec4d weights = weights_;
@@ -385,6 +385,7 @@ std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
     const double more = 1 + 2 * std::sqrt(2. / std::max<double>((double)rows.size(), 1));
     const Linear linear(pose);
     std::vector<Square<Step>> all;
+    all.reserve(rows.size());
     for (const Row<Step>& r : rows)
     {
         Square<Step> noise = Square<Step>::zeros();

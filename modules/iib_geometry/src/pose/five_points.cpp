@@ -134,6 +134,7 @@ void addProduct(const Vec<double, 11>& a, const Vec<double, 11>& b, double facto
 void fivePointEssentials(const Point2d first[5], const Point2d second[5], std::vector<Matx33d>& essentials)
 {
     essentials.clear();
+    essentials.reserve(10);
     Linear E[9];
     if (!nullSpace(first, second, E))
         return;

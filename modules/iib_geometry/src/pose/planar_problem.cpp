@@ -74,7 +74,7 @@ void PlanarProblem::propose(const std::vector<int>& sample, std::vector<Matx33d>
     transforms.push_back(transform);
 }
 
-PlanarProblem::Place PlanarProblem::placeOf(const Matx33d& transform, const Vec3d& point) const
+inline PlanarProblem::Place PlanarProblem::placeOf(const Matx33d& transform, const Vec3d& point) const
 {
     const Vec3d q = transform * point;
     const double perW = 1 / q[2];
@@ -140,13 +140,13 @@ void PlanarProblem::linearize(const Matx33d& transform, double limit, std::vecto
         const Place place = placeOf(transform, image_[i]);
         for (int c = 0; c < 2; c++)
         {
-            Row<Step> row;
+            rows.emplace_back();
+            Row<Step>& row = rows.back();
             row.match = i;
             row.r = unit_ * (place.at[c] - reference_[i][c]);
             row.r2 = r2;
-            for (int k = 0; k < parameters(); k++)
+            for (int k = 0; k < Step::channels; k++)
                 row.J[k] = unit_ * place.byStep(c, k);
-            rows.push_back(row);
         }
     }
 }

@@ -28,11 +28,10 @@ public:
     void linearize(const Matx33d& transform, double limit, std::vector<Row<Step>>& rows) const;
     Matx33d moved(const Matx33d& transform, const Step& step) const;
 
-    //! Zero: derivatives hardly depend on the points' noise.
-    std::vector<Square<Step>> noiseInDerivatives(
-            const Matx33d&, const std::vector<Row<Step>>& rows, double) const
+    //! None: derivatives hardly depend on the points' noise.
+    std::vector<Square<Step>> noiseInDerivatives(const Matx33d&, const std::vector<Row<Step>>&, double) const
     {
-        return std::vector<Square<Step>>(rows.size());
+        return {};
     }
 
     //! Converts a Model, which transforms normalized coordinates, to pixels.

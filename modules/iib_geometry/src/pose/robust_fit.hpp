@@ -24,6 +24,7 @@ const double REFINED = .25;           // pixels: least scale of the inlier thres
 const double MISSED = 1e-4;           // accepted probability that every sample has a wrong match
 const double FARTHEST = 9;            // squared scales
 const double FARTHEST_OF_CHOICE = 4;  // scales at which squared errors are cut off when a model is chosen
+const int MANY_SAMPLES = 10000;
 const double FINELY = 1e-9, ROUGHLY = 1e-3;  // polish's `enough`
 
 /** The loss of a squared error r^2: Cauchy's log(1 + r^2 / scale^2), constant from `farthest` scale^2 on. How far a wrong match is
@@ -45,12 +46,13 @@ template <class Step> struct Row
 
 template <class Step> using Square = Matx<double, Step::channels, Step::channels>;
 
-//! Adds weight J J' to the lower triangle of a sum.
+//! Adds weight J J' to the lower triangle of a sum, and to parts of the upper one, since compilers vectorize pairs of entries.
 template <class Step> void addProduct(const Step& J, double weight, Square<Step>& sum)
 {
     for (int a = 0; a < Step::channels; a++)
-        for (int b = 0; b <= a; b++)
-            sum(a, b) += weight * J[a] * J[b];
+        if (Step::channels < 8 || J[a] != 0)  // a transform's J has many zeros
+            for (int b = 0; b <= std::min(a | 1, Step::channels - 1); b++)
+                sum(a, b) += weight * J[a] * J[b];
 }
 
 //! Copies the lower triangle of a matrix to the upper one.
@@ -292,9 +294,9 @@ inline bool findScale(const std::vector<double>& squared, double distance, int p
 
 /** The model that most matches agree with. Deterministic. The scale of refined matches is tried with few samples, and twice that scale if
 most errors are not far below it. */
-template <class Problem> Fit<Problem> robustFit(const Problem& problem)
+template <class Problem> Fit<Problem> robustFit(const Problem& problem, int mostTrials = MANY_SAMPLES)
 {
-    const int fewest = 150, fewTrials = 1000, mostTrials = 10000;
+    const int fewest = 150, fewTrials = std::min(1000, mostTrials);
     Fit<Problem> fit;
     // Takes the best model of a search; returns whether its errors show a scale.
     const auto choose = [&](Search<Problem>& search, double scale, int trials) {

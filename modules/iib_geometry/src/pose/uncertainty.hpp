@@ -101,7 +101,8 @@ Square<typename Problem::Step> covarianceOf(const Problem& problem, const typena
         Part& part = all[parts[row.match]];
         const double weight = 1 / (1 + row.r2 * perScale2);
         addProduct(row.J, bend * weight, part.hessian);
-        part.hessian -= noises[i] * bend;
+        if (!noises.empty())
+            part.hessian -= noises[i] * bend;
         addProduct(row.J, noise2 * square(meanSlope), ofGradient);
         part.gradient += weight * row.r * row.J;
         part.along += weight * row.J;

@@ -90,7 +90,7 @@ Verdict::Marks withinByMoreThanChance(
         for (; parallaxes[order[begin]] * alike < parallaxes[i]; begin++)
             add(order[begin], -1);
         double term = std::exp(-expected), fewer = 0;  // Poisson's distribution
-        for (int k = 0; k < near && k < 100; k++)
+        for (int k = 0; 1 - fewer > chance && k < near && k < 100; k++)
         {
             fewer += term;
             term *= expected / (k + 1);
@@ -135,7 +135,7 @@ Verdict::Marks movedByParallax(const Points& reference, const Points& image, con
         for (size_t k = 0; k < others.size(); k++)
         {
             const Vec3d line = epipole.cross(planar[k]), here = homogeneous(reference[others[k]]);
-            const bool near = std::abs(line.dot(here)) < limit * std::hypot(line[0], line[1]);
+            const bool near = square(line.dot(here)) < limit * limit * (square(line[0]) + square(line[1]));
             agree[others[k]] = near;
             count += near;
         }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <set>
+#include <unordered_set>
 
 #include "../precomp.hpp"
 #include "opencv2/iib/verdict.hpp"
@@ -102,10 +102,10 @@ Verdict::Verdict(const Points& points1, const Points& points2)
                 cells_[image].push_back(within(p.y - span.y) * (CELLS + 1) + within(p.x - span.x));
             spans_[image] = span.size();
         }
-        std::set<std::pair<int, int>> known;
+        std::unordered_set<size_t> known(count);
         firsts_.clear();
         for (int i = 0; i < count; i++)
-            if (all[0] == all[1] || known.insert({cells_[0][i], cells_[1][i]}).second)
+            if (all[0] == all[1] || known.insert(cells_[0][i] * Cells().size() + cells_[1][i]).second)
                 firsts_.push_back(i);
     }
 }
@@ -229,19 +229,20 @@ bool Verdict::isOfSmallParts(const Marks& agreeing, int sampleSize, double chanc
         {
             double most = 0;
             Rect best;
+            integral(counts, sums, CV_64F);
             for (const Size& size : sizes)
-            {
-                double here;
-                Point at;
-                boxFilter(counts, sums, CV_64F, size, Point(0, 0), false, BORDER_CONSTANT);
-                minMaxLoc(sums(Rect(0, 0, side - size.width + 1, side - size.height + 1)), nullptr, &here,
-                        nullptr, &at);
-                if (here > most)
-                {
-                    most = here;
-                    best = Rect(at, size);
-                }
-            }
+                for (int y = 0; y + size.height <= side; y++)
+                    for (int x = 0; x + size.width <= side; x++)
+                    {
+                        const double *top = sums.ptr<double>(y, x),
+                                     *bottom = sums.ptr<double>(y + size.height, x);
+                        const double here = bottom[size.width] - bottom[0] - top[size.width] + top[0];
+                        if (here > most)
+                        {
+                            most = here;
+                            best = Rect(Point(x, y), size);
+                        }
+                    }
             all(best) = 0;
             counts(best) = 0;
             const auto isInside = [&](int i) { return best.contains({cells[i] % side, cells[i] / side}); };
