@@ -166,7 +166,7 @@ A pose is accepted if all of these hold:
 
 An image without a pose, and without a prior, is then matched in views with the five most similar images of the map (as
 matchViews, without tilts). This finds images at any rotation, and from up to four times nearer or farther. It takes 5
-to 10 times as long as an upright image, and 20 times if the image is not found. */
+to 10 times as long as an upright image, and 20 to 50 times if the image is not found. */
 class CV_EXPORTS Localizer
 {
 public:
