@@ -231,7 +231,7 @@ def localize_images(map: Path, images: Path, out: Path, camera: Optional[AnyCame
         check_outputs([out], read)
     else:
         check_folder(out, read, ', X.csv and -')
-    if imu is None and not np.array_equal(imu_from_camera, np.eye(4)):
+    if imu is None and not np.array_equal(np.asarray(imu_from_camera)[:3], np.eye(4)[:3]):
         raise InvalidOption('imu_from_camera goes with imu alone: give its file (--imu)')
     if imu is not None:
         readings = read_imu(os.fspath(imu))

@@ -26,7 +26,7 @@ std::vector<int> workingSizes(const Size& first, const Size& second)
 //! The result of one pair of views, in the images' own pixels.
 struct Answer
 {
-    Judgement judgement;
+    Judgement judgement{"the images have too few matches", false, ""};
     Mat agreeing;       //!< as alignImages returns matches
     Matx33d transform;  //!< the best one, also where it is refused
     Mat error;
@@ -159,12 +159,13 @@ private:
     void search(const ImageViews& second, Answer& best) const
     {
         if (best.judgement.isLast)
-            improve(second, mapOfWholeImages(reference_, second), false, 1, best);
+            improve(second, Matx33d::eye(), false, 1, best);
         const bool areOfOneSize = !isMuchLarger(reference_, second);
         if (best.judgement.isLast && (best.found() || areOfOneSize))
             return;
+        const Answer ofWhole = best;
         if (!areOfOneSize)
-            best = Answer();  // of the whole reference and a picture that may show a part of it
+            best = Answer();  // the reference's other parts do not count
         const bool onlySimilar = model_ == ALIGN_SIMILARITY;
         searchViews(reference_, second, onlySimilar ? 1 : MOST_TILT,
                 [&](const ViewCandidate& candidate, int tried) {
@@ -175,6 +176,8 @@ private:
                         improve(second, map, true, tried, best);
                     return best.judgement.isLast;
                 });
+        if (best.agreeing.empty())
+            best = ofWhole;
     }
 
     /** Matches again in the views of the transform that was found, while they differ from the last ones. This includes a refusal: in views that
@@ -183,11 +186,13 @@ private:
     @param areParts whether only the parts were matched that both images show. */
     void improve(const ImageViews& second, Matx33d map, bool areParts, int tried, Answer& best) const
     {
-        for (int round = 0; round < MOST_IMPROVED; round++)
+        for (int round = 0; round < MOST_IMPROVED && !best.agreeing.empty(); round++)
         {
             const Scalar centre = mean(best.agreeing.reshape(4));
             const Matx33d next = affineAt(best.transform.inv(), Point2d(centre[0], centre[1]));
-            if (haveSimilarViews(next, map) && (!areParts || showSameParts(next, map, second.size())))
+            const bool arePlaced =
+                    areParts ? showSameParts(next, map, second.size()) : !isMuchLarger(reference_, second);
+            if (haveSimilarViews(next, map) && arePlaced)
                 return;
             map = next;
             areParts = true;

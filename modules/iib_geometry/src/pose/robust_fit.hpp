@@ -46,7 +46,7 @@ template <class Step> struct Row
 
 template <class Step> using Square = Matx<double, Step::channels, Step::channels>;
 
-//! Adds weight J J' to the lower triangle of a sum, and to parts of the upper one, since compilers vectorize pairs of entries.
+//! Adds weight J J' to the lower triangle of a sum. Entries beside the diagonal, which mirror() replaces, make pairs that compilers vectorize.
 template <class Step> void addProduct(const Step& J, double weight, Square<Step>& sum)
 {
     for (int a = 0; a < Step::channels; a++)

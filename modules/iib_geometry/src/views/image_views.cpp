@@ -29,7 +29,8 @@ void setAngle(std::vector<KeyPoint>& keypoints, float angle)
 }
 
 /** Keeps the strongest points of each tile, so that every part of a large image has some.
-@param keypoints sorted by response. @param toTiles to pixels of the reduced image. */
+@param keypoints sorted by response.
+@param toTiles from pixels of the view to pixels of the reduced image. */
 void keepStrongest(std::vector<KeyPoint>& keypoints, const Matx33d& toTiles)
 {
     std::map<std::pair<int, int>, int> kept;
@@ -84,11 +85,15 @@ std::shared_ptr<const DescribedView> ImageViews::described(
 {
     const int margin = cvCeil(std::min(
             MARGIN / std::min(view.scales[0], view.scales[1]), (double)std::max(image_.rows, image_.cols)));
-    const Rect box = boxOf(part, size()), whole(Point(), size()),
-               shown = box.empty()
-                               ? whole
-                               : Rect(box.tl() - Point(margin, margin), box.br() + Point(margin, margin)) &
-                                         whole;
+    const Rect box = boxOf(part, size());
+    if (box.empty())
+    {
+        const std::shared_ptr<DescribedView> nothing = std::make_shared<DescribedView>();
+        nothing->fromImage = view.fromImage(size());
+        return nothing;
+    }
+    const Rect shown =
+            Rect(box.tl() - Point(margin, margin), box.br() + Point(margin, margin)) & Rect(Point(), size());
     const Matx33d fromImage = view.fromImage(shown.size()) * Matx33d(1, 0, -shown.x, 0, 1, -shown.y, 0, 0, 1);
     Mat mask(view.sizeOf(shown.size()), CV_8U, Scalar(0));
     std::vector<Point> corners;

@@ -137,12 +137,13 @@ ViewPair ViewPair::within(int most, const Size& image1, const Size& image2, cons
         const Matx33d fromOther = views[i].fromImage(sizes[i]) * (i ? map : map.inv());
         const Rect part = boxOf(cornersAround(sizes[!i], fromOther, 0), whole);
         longest = std::max({longest, whole.width, whole.height});
-        longestPart = std::max({longestPart, part.width, part.height});
+        const Size shown = part.empty() ? whole : part.size();
+        longestPart = std::max({longestPart, shown.width, shown.height});
     }
-    const double shown = std::max(longestPart, std::min(longest, WORKING_SIZE));
+    const double reduced = std::max(longestPart, std::min(longest, WORKING_SIZE));
     ViewPair pair = *this;
     for (View& view : pair.views)
-        view.scales *= std::min(std::clamp((double)SMALL / longest, 1., MOST_ENLARGED), most / shown);
+        view.scales *= std::min(std::clamp((double)SMALL / longest, 1., MOST_ENLARGED), most / reduced);
     return pair;
 }
 
@@ -158,14 +159,15 @@ std::vector<Point2d> cornersAround(const Size& image, const Matx33d& map, double
 
 Rect boxOf(const std::vector<Point2d>& points, const Size& image)
 {
-    Point2d low(image.width, image.height), high;
+    Point2d low(image.width, image.height), high(0, 0);
     for (const Point2d& point : points)
     {
         low = {std::min(low.x, point.x), std::min(low.y, point.y)};
         high = {std::max(high.x, point.x), std::max(high.y, point.y)};
     }
-    const Rect2d whole(0, 0, image.width, image.height);
-    return Rect(Rect2d(low, high) & whole);
+    const Point from(cvFloor(std::max(low.x, 0.)), cvFloor(std::max(low.y, 0.))),
+            to(cvCeil(std::min(high.x, (double)image.width)), cvCeil(std::min(high.y, (double)image.height)));
+    return from.x < to.x && from.y < to.y ? Rect(from, to) : Rect();
 }
 
 Matx33d affineAt(const Matx33d& transform, const Point2d& point)

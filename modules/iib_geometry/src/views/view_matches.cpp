@@ -151,11 +151,13 @@ ViewMatches matchInViewsOf(const ImageViews& first, const ImageViews& second, co
             *second.described(pair.views[1], (float)pair.angle, cornersAround(first.size(), map)), false);
 }
 
-//! Matches again in views of the estimated map, until the map stops changing or inliers are lost.
-void improve(const ImageViews& first, const ImageViews& second, Matx33d map, ViewMatches& best)
+/** Matches again in views of the estimated map, until the map stops changing or inliers are lost.
+@param always whether at least once: whole images were matched, of which one shows a part of the other. */
+void improve(const ImageViews& first, const ImageViews& second, Matx33d map, bool always, ViewMatches& best)
 {
-    for (int round = 0; round < MOST_IMPROVED && !haveSimilarViews(best.map, map); round++)
+    for (int round = 0; round < MOST_IMPROVED && (always || !haveSimilarViews(best.map, map)); round++)
     {
+        always = false;
         map = best.map;
         ViewMatches found = matchInViewsOf(first, second, map);
         if (found.inliers <= best.inliers)
@@ -170,13 +172,13 @@ ViewMatches matchInSomeViews(const ImageViews& first, const ImageViews& second, 
 {
     ViewMatches best = matchTwoViews(*first.described(View()), *second.described(View()), true);
     if (best.isDecisive())
-        improve(first, second, mapOfWholeImages(first, second), best);
+        improve(first, second, Matx33d::eye(), isMuchLarger(first, second), best);
     if (best.isDecisive())
         return best;
     const int tried = searchViews(first, second, maxTilt, [&](const ViewCandidate& candidate, int) {
         ViewMatches found = matchInViewsOf(first, second, candidate.map);
         if (found.isDecisive())
-            improve(first, second, candidate.map, found);
+            improve(first, second, candidate.map, false, found);
         if (found.logFalseAlarms < best.logFalseAlarms)
             std::swap(found, best);
         return best.isDecisive();

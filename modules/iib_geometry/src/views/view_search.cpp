@@ -66,12 +66,20 @@ struct SearchedImage
     Matx33d toCoarse(const View& view) const { return image.toCoarse(view, side); }
 };
 
-//! An image whose pixels are as large as those of the other one in an ordinary search, if that is the smaller one.
+//! Pixels of the longer side of an image whose pixels are as large as those of the other one in an ordinary search, if that is smaller.
+double sideAtPixelsOf(const ImageViews& other, const ImageViews& image)
+{
+    return longerOf(image) *
+           std::min(ImageViews::COARSE_SIDE / (double)std::min(longerOf(other), longerOf(image)), 1.);
+}
+
+//! An image at about the pixels of the other one: of few sizes, since ImageViews keeps each.
 SearchedImage atPixelsOf(const ImageViews& other, const ImageViews& image)
 {
-    const double scale = ImageViews::COARSE_SIDE / (double)std::min(longerOf(other), longerOf(image));
-    return {image,
-            std::clamp(cvRound(longerOf(image) * std::min(scale, 1.)), ImageViews::COARSE_SIDE, LARGEST)};
+    int side = ImageViews::COARSE_SIDE;
+    while (side < sideAtPixelsOf(other, image) && side < LARGEST)
+        side = std::min(cvRound(side * std::sqrt(2.)), LARGEST);
+    return {image, side};
 }
 
 //! The map with the most support over all rotations of two views.
@@ -110,7 +118,8 @@ bool search(const SearchedImage& first, const SearchedImage& second, double maxT
     const int rotations = int(FIRST_ANGLES.size() * SECOND_ANGLES.size()) *
                           cvRound(square(std::max({first.side, second.side, ImageViews::COARSE_SIDE}) /
                                          (double)ImageViews::COARSE_SIDE));
-    const bool areWhole = std::max(longerOf(first.image), longerOf(second.image)) <= WORKING_SIZE;
+    const bool areWhole = std::max(longerOf(first.image), longerOf(second.image)) <= WORKING_SIZE &&
+                          !isMuchLarger(first.image, second.image);
     const auto wasTried = [&](const ViewCandidate& candidate) {  // before the search
         return areWhole && haveSimilarViews(candidate.map, Matx33d::eye());
     };
@@ -137,14 +146,8 @@ bool search(const SearchedImage& first, const SearchedImage& second, double maxT
 
 bool isMuchLarger(const ImageViews& first, const ImageViews& second)
 {
-    return std::max(atPixelsOf(second, first).side, atPixelsOf(first, second).side) >
+    return std::max(sideAtPixelsOf(second, first), sideAtPixelsOf(first, second)) >
            MUCH_LARGER * ImageViews::COARSE_SIDE;
-}
-
-Matx33d mapOfWholeImages(const ImageViews& first, const ImageViews& second)
-{
-    const double scale = isMuchLarger(first, second) ? longerOf(second) / (double)longerOf(first) : 1;
-    return Matx33d::diag({scale, scale, 1});
 }
 
 int searchViews(const ImageViews& first, const ImageViews& second, double maxTilt,

@@ -19,9 +19,6 @@ struct ViewCandidate
 //! Whether one image has so many more pixels that the other is searched for in its parts.
 bool isMuchLarger(const ImageViews& first, const ImageViews& second);
 
-//! The map under which upright images look alike when each is reduced to the working size.
-Matx33d mapOfWholeImages(const ImageViews& first, const ImageViews& second);
-
 /** Searches for views in which two images match: relative scales from 1/4 to 4 at any rotation, then tilts.
 @param maxTilt largest tilt between the images; up to 2 no view is tilted.
 @param tryCandidate called at once with candidates of high support, at the end with the best others; true ends the search. Its second argument

@@ -118,7 +118,6 @@ TEST(Views, align_reduced_and_tilted_images)
     }
 }
 
-// Squared errors over variances are about one along each axis, whatever the view.
 TEST(Views, find_a_small_picture_on_a_large_map)
 {
     const Size large(2600, 1800);
@@ -141,10 +140,37 @@ TEST(Views, find_a_small_picture_on_a_large_map)
         EXPECT_LT(result.cornerError(truth.inv()), 1) << change.name;
         EXPECT_GE(result.matches.rows, change.least) << change.name;
     }
-    EXPECT_FALSE(matchViews(map, other, noArray(), noArray()));
-    EXPECT_FALSE(Aligned(map, other, ALIGN_HOMOGRAPHY).found);
+    const Mat blank(SIZE, CV_8U, Scalar(7)), none(large, CV_8U, Scalar(0));
+    for (const Mat& picture : {other, blank})
+    {
+        EXPECT_FALSE(matchViews(map, picture, noArray(), noArray()));
+        for (bool swapped : {false, true})
+        {
+            const Aligned result(swapped ? picture : map, swapped ? map : picture, ALIGN_HOMOGRAPHY);
+            EXPECT_FALSE(result.found);
+            EXPECT_NE("", result.reason);
+        }
+    }
+    Mat transform;
+    EXPECT_FALSE(alignImages(map, map(Rect(Point(900, 700), SIZE)), transform, ALIGN_HOMOGRAPHY, noArray(),
+            noArray(), nullptr, none));
 }
 
+TEST(Views, a_picture_of_the_same_part_with_fewer_pixels_has_as_many_matches)
+{
+    Mat image = spots(5, 6000, Size(1000, 750));
+    GaussianBlur(image, image, Size(), 1.5);
+    for (double scale : {.64, .55})
+    {
+        Mat smaller, points1, points2;
+        cv::resize(image, smaller, Size(), scale, scale, INTER_AREA);
+        EXPECT_TRUE(matchViews(image, smaller, points1, points2, noArray(), noArray(), noArray(), 2000));
+        EXPECT_GE(points1.rows, 1000) << scale;
+        EXPECT_GE(Aligned(image, smaller, ALIGN_HOMOGRAPHY).matches.rows, 1000) << scale;
+    }
+}
+
+// Squared errors over variances are about one along each axis, whatever the view.
 TEST(Views, covariances_are_of_pixels_of_the_image)
 {
     Matx33d truth;
