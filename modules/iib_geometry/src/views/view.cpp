@@ -166,7 +166,8 @@ Rect boxOf(const std::vector<Point2d>& points, const Size& image)
         high = {std::max(high.x, point.x), std::max(high.y, point.y)};
     }
     const Point from(cvFloor(std::max(low.x, 0.)), cvFloor(std::max(low.y, 0.))),
-            to(cvCeil(std::min(high.x, (double)image.width)), cvCeil(std::min(high.y, (double)image.height)));
+            to(cvFloor(std::min(high.x, image.width - 1.)) + 1,
+                    cvFloor(std::min(high.y, image.height - 1.)) + 1);
     return from.x < to.x && from.y < to.y ? Rect(from, to) : Rect();
 }
 

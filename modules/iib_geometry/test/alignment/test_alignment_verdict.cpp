@@ -343,6 +343,35 @@ TEST(Alignment, chooses_no_untrue_model_of_another_part)
 }
 
 //! Like land in a corner of the image, beside waves that cannot match.
+TEST(Alignment, finds_a_text_in_which_letters_changed)
+{
+    const auto page = [](int seed, bool isEdited) {
+        RNG letters(seed), others(seed + 99);
+        Mat image(600, 500, CV_8U, Scalar(245));
+        for (int line = 0; line < 14; line++)
+        {
+            String text;
+            for (int k = 0; k < 24; k++)
+            {
+                const char letter = (char)letters.uniform('a', 'e'), other = (char)others.uniform('a', 'e');
+                text += isEdited && (line + k / 6) % 3 == 0 ? other : letter;
+            }
+            putText(image, text, Point(40, 60 + 38 * line), FONT_HERSHEY_SIMPLEX, .65, Scalar(30), 1,
+                    LINE_AA);
+        }
+        return image;
+    };
+    for (int seed = 16; seed < 20;
+            seed++)  // repeated letters lie beside the transform, as if the camera had moved
+    {
+        Mat image;
+        warpAffine(page(seed, true) * .8, image, Matx23d(1.004, .007, 3, -.007, 1.004, -4), Size(),
+                INTER_CUBIC, BORDER_REPLICATE);
+        const Aligned result(page(seed, false), image, ALIGN_HOMOGRAPHY);
+        EXPECT_TRUE(result.found) << result.reason;
+    }
+}
+
 TEST(Alignment, finds_a_place_in_one_part_of_the_image)
 {
     const Matx33d by(1, 0, 3, 0, 1, -2, 0, 0, 1);
