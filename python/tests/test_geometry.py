@@ -96,7 +96,6 @@ class Memory(unittest.TestCase):
         program = """
 import numpy as np
 import opencv_iib
-from opencv_iib._images import import_cv2
 from support import texture
 
 def peak(name):

@@ -124,10 +124,13 @@ const std::vector<Described>& ImageViews::coarse(
     if (!found.empty())
         return found;
     const View reduced = coarseView(side);
-    Mat& base = bases_[side];
+    Mat &base = bases_[side].first, &mask = bases_[side].second;
     if (base.empty())
+    {
         base = reduced.pixels(image_);
-    const Mat pixels = view.pixels(base), mask = mask_.empty() ? Mat() : reduced.mask(size(), mask_);
+        mask = mask_.empty() ? Mat() : reduced.mask(size(), mask_);
+    }
+    const Mat pixels = view.pixels(base);
     const Ptr<IIBDescriptorExtractor> extractor =
             extractorOf(side > COARSE_SIDE ? 0 : COARSE_POINTS, false, 0);
     std::vector<KeyPoint> keypoints, all;

@@ -74,7 +74,8 @@ private:
     const Mat image_, mask_;
     const int maxFeatures_;
     mutable std::mutex mutex_;
-    mutable std::map<int, Mat> bases_;  //!< reduced images for coarse(), by their longer sides
+    //! Reduced images and masks for coarse(), by their longer sides.
+    mutable std::map<int, std::pair<Mat, Mat>> bases_;
     mutable std::shared_ptr<const PreparedImage> prepared_;
     mutable std::map<View, std::shared_ptr<const DescribedView>> described_;
     mutable std::map<std::tuple<View, std::vector<float>, int>, std::vector<Described>> coarse_;

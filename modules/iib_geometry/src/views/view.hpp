@@ -49,8 +49,8 @@ struct ViewPair
     @param map from pixels of image 1 to pixels of image 2. */
     static ViewPair of(const Matx33d& map);
 
-    /** The pair reduced, so that a view or the part of it that both images show has a longest side of `most` pixels, or enlarged up to twice
-    towards SMALL to get more points.
+    /** The pair reduced, so that the part that both images show has a longest side of `most` pixels. Small views are enlarged up to twice, to get
+    more points.
     @param map as in of(). */
     ViewPair within(int most, const Size& image1, const Size& image2, const Matx33d& map) const;
 };
