@@ -14,6 +14,7 @@ const double LONGITUDES = 72;  // degrees times tilt between tilted views (Morel
 const double FARTHER = .6;     // scale of the other image, against a tilted view
 const double TOLERANCE = .4;   // relative error of displacements, since views are sampled coarsely
 const int IMMEDIATE = 30;      // matches: support with which a candidate is tried at once
+const int ROTATED = 15;        // the same for images that are only rotated, where chance seldom gives as many
 const int LEAST = 4;           // matches: support with which a candidate may be tried after the search
 const int MOST_TRIED = 6;      // of candidates after the search
 const int LARGEST = 4096;      // pixels: longer side of an image, during the search
@@ -130,9 +131,11 @@ bool search(const SearchedImage& first, const SearchedImage& second, double maxT
         tried += rotations;
         if (wasTried(candidate))
             continue;
-        if (candidate.support >= IMMEDIATE && tryCandidate(candidate, tried))
+        const bool isRotated = pair.first.isImage() && pair.second.isImage();
+        const bool isClear = candidate.support >= (isRotated ? ROTATED : IMMEDIATE);
+        if (isClear && tryCandidate(candidate, tried))
             return true;
-        if (candidate.support >= LEAST && candidate.support < IMMEDIATE)
+        if (candidate.support >= LEAST && !isClear)
             others.push_back(candidate);
     }
     std::stable_sort(others.begin(), others.end());
