@@ -245,7 +245,9 @@ bool Verdict::isOfSmallParts(const Marks& agreeing, int sampleSize, double chanc
                     }
             all(best) = 0;
             counts(best) = 0;
-            const auto isInside = [&](int i) { return best.contains(Point(cells[i] % side, cells[i] / side)); };
+            const auto isInside = [&](int i) {
+                return best.contains(Point(cells[i] % side, cells[i] / side));
+            };
             shifted += countOfOneShift(agreeing, isInside);
             inside += most;
             const bool isShifted = shifted > mostShifted * inside;
