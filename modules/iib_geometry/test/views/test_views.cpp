@@ -223,8 +223,8 @@ TEST(Views, refuses_images_of_other_scenes)
     Mat smooth, mirrored, points1, points2;
     GaussianBlur(spots(1, 700, SIZE), smooth, Size(), 4);
     flip(smooth, mirrored, 1);
-    EXPECT_FALSE(
-            matchViews(smooth, mirrored, points1, points2));  // one of 348 pairs of views agrees by chance
+    // One of 348 pairs of views agrees by chance.
+    EXPECT_FALSE(matchViews(smooth, mirrored, points1, points2));
     EXPECT_FALSE(matchViews(Mat(), picture(1), points1, points2));
     EXPECT_FALSE(matchViews(picture(1), Mat(300, 400, CV_8U, Scalar(9)), points1, points2));
     EXPECT_TRUE(points1.empty() && points2.empty());
@@ -296,7 +296,6 @@ TEST(Views, show_two_images_in_one_shape_without_enlargement)
     }
 }
 
-// A spot must appear where the view's map projects it.
 TEST(Views, are_enlarged_if_small_and_reduced_by_the_part_that_both_images_show)
 {
     const auto scale = [](int most, const Size& first, const Size& second, const Point& shift) {
@@ -312,6 +311,7 @@ TEST(Views, are_enlarged_if_small_and_reduced_by_the_part_that_both_images_show)
     EXPECT_DOUBLE_EQ(1024 / 3000., scale(1024, Size(3000, 2000), Size(640, 480), Point(9000, 0)));
 }
 
+// A spot must appear where the view's map projects it.
 TEST(Views, pixels_are_where_their_map_projects_them)
 {
     const Point2d spot(201, 77);

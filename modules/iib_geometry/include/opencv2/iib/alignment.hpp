@@ -25,8 +25,8 @@ It is for images of a plane, and for any scene by a camera that does not move; i
 places have no such transform: use findRelativePose.
 
 Points are detected in both images, matched and refined (refineMatches), and a transform is fitted to most of the matches. If that fails, views of
-images that are rotated, zoomed or tilted against each other are searched (as in matchViews, for all models but ALIGN_TRANSLATION). This also finds
-a small image in a part of a large one. Images of more than 1024 pixels are reduced for matching; after a search only their common parts count. A
+images that are rotated, zoomed or tilted against each other are searched (as in matchViews, for all models but ALIGN_TRANSLATION). The search also
+finds a small image in a part of a large one. Images of more than 1024 pixels are reduced for matching; after a search only their common parts count. A
 second attempt reduces images of more than 512 pixels to 512, where blurred images are sharper. The matches that agree are then refined at full
 size, if the images are sharp there. The result does not depend on the number of threads.
 

@@ -30,7 +30,8 @@ Limits:
 - Images of more than 640 pixels are reduced to 640 for the search, and their common parts to 1024 for matching after
   it. Covariances are those of the reduced images, in pixels of the originals.
 - An image of more than 960 pixels and more than 1.5 times the other's longer side is searched in all its parts first.
-  Both then have pixels of about the same size, up to 4096 on the longer side. This takes time in proportion to them.
+  Both then have pixels of about the same size, up to 4096 on the longer side. The search takes time in
+  proportion to the pixels.
 - Views are affine: in a scene with strong perspective one part alone may match.
 - Mirrored images are not searched for, but a symmetric picture may match its mirror image.
 
