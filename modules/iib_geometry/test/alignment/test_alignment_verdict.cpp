@@ -118,6 +118,20 @@ TEST(Alignment, finds_a_part_that_is_all_that_both_images_show)
     }
 }
 
+//! Ten matches of a very small part agree, but a homography is not known far from them.
+TEST(Alignment, refuses_a_transform_that_is_uncertain_at_the_corners)
+{
+    for (const auto& [seed, side] : {std::make_pair(1, 28), {14, 33}})
+    {
+        Mat mask = Mat::zeros(SIZE, CV_8U), transform;
+        mask(Rect(20, 20, side, side * 3 / 4)) = 1;
+        String reason;
+        EXPECT_FALSE(alignImages(picture(seed), inOtherLight(picture(seed)), transform, ALIGN_HOMOGRAPHY,
+                noArray(), noArray(), &reason, noArray(), mask));
+        EXPECT_NE(reason.find("uncertain by a quarter"), String::npos) << seed << ": " << reason;
+    }
+}
+
 //! One image shows nothing but a logo.
 TEST(Alignment, refuses_a_logo_that_is_all_that_an_image_shows)
 {

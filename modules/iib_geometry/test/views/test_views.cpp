@@ -156,6 +156,21 @@ TEST(Views, find_a_small_picture_on_a_large_map)
             noArray(), nullptr, none));
 }
 
+// Matched with a whole map it is refused, although the map is not reduced; matched with its part of the map it is found.
+TEST(Views, align_a_small_upright_picture)
+{
+    for (const auto& [seed, part] :
+            {std::make_pair(3, Rect(670, 60, 140, 105)), {4, Rect(670, 360, 150, 112)}})
+    {
+        Mat map = spots(seed, 3000, Size(1000, 700));
+        GaussianBlur(map, map, Size(), 1.5);
+        const Aligned result(map, inOtherLight(map(part)), ALIGN_HOMOGRAPHY);
+        ASSERT_TRUE(result.found) << seed << ": " << result.reason;
+        EXPECT_NEAR(part.x, result.at(0, 2), .5);
+        EXPECT_NEAR(part.y, result.at(1, 2), .5);
+    }
+}
+
 TEST(Views, a_picture_of_the_same_part_with_fewer_pixels_has_as_many_matches)
 {
     Mat image = spots(5, 6000, Size(1000, 750));
