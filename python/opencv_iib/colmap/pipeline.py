@@ -48,8 +48,8 @@ class Options:
     pairs: Path = 'exhaustive'  #: one of PAIRS, or the name of a file with two names a line
     neighbours: int = 20  #: images that each is paired with (sequential, retrieval, gps)
     ratio: float = .92  #: ratio test, as HierarchicalMatcher.setMaxRatio; 1: none. Matches are always mutual.
-    search: bool = True  #: search pairs at other zooms, rotations and tilts where images would stay unconnected; not if verify is none
     verify: str = 'auto'  #: one of VERIFIERS; auto: COLMAP's program if it is there, else MAGSAC
+    search: bool = True  #: search pairs at other zooms, rotations and tilts where images would stay unconnected; not if verify is none
 
     def __post_init__(self) -> None:
         pairs = os.fspath(self.pairs)
