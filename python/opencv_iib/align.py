@@ -82,7 +82,7 @@ class _Options(NamedTuple):
 
 def align(reference: Path, images: Sequence[Path], out: Path, model: int = AlignmentModel.AUTO, exif: bool = True,
           mask: Optional[Path] = None, max_size: int = 0, format: Optional[str] = None, crop: bool = False, interpolation: str = 'LINEAR',
-          chain: bool = False, workers: Optional[int] = None, log: Callable[[str], None] = note) -> list[Aligned]:
+          workers: Optional[int] = None, chain: bool = False, log: Callable[[str], None] = note) -> list[Aligned]:
     """Aligns images with a reference. Writes each as the reference's camera would see it, with its own depth, channels and pages (NAME.png, .jpg
     or .tif); ``transforms.csv``; ``align.json``; and ``index.html``, where a slider moves the border between the reference and the image.
 
@@ -98,9 +98,9 @@ def align(reference: Path, images: Sequence[Path], out: Path, model: int = Align
     :param format: one of FORMATS; None: the format of each image's file, or PNG, or TIFF where only that holds all of it.
     :param crop: write the part that all aligned images show, instead of the part that the reference shows.
     :param interpolation: one of INTERPOLATIONS.
+    :param workers: threads; None for one per core.
     :param chain: the images are a series, such as exposures or years. An image without a transform to the reference is aligned through the image
         before or after it, and the errors of both steps add up.
-    :param workers: threads; None for one per core.
     :param log: gets a line for each file that cv2 does not read, and for pages that are left out since they differ from the first one.
     :return: results in the order of `images`; the table and the page sort 2 before 10 and b before C.
     :raises ValueError: for a reference that is no image or too large, for no other image, or with `crop` if no part is common to all.

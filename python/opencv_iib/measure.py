@@ -42,9 +42,9 @@ class Measured(NamedTuple):
     bits: NDArray[np.int32]  #: different bits of each match; -1 where simulated views were matched
     pose: Optional[RelativePose]  #: None without cameras
     found: bool  #: there is a pose; without cameras: the matches that agree with an epipolar geometry or homography are significant
+    rotation: float  #: degrees, clockwise, of the second image against the first, besides EXIF's orientation; 0: less than 8
+    scale: float  #: size in the second image by that in the first; 1: within a fifth
     view: NDArray[np.float64]  #: 3 x 3: approximate affine map from pixels of the first image to pixels of the second
-    rotation: float = 0  #: degrees, clockwise, of the second image against the first, besides EXIF's orientation; 0: less than 8
-    scale: float = 1  #: size in the second image by that in the first; 1: within a fifth
 
     @property
     def refined(self) -> NDArray[np.bool_]:
@@ -256,7 +256,7 @@ class _Pair:
     def _result(self, matches: RefinedMatches, bits: np.ndarray, pose: Optional[RelativePose], found: bool, view: np.ndarray) -> Measured:
         """:param found: without a pose. :param view: between stored images."""
         upright_view = np.linalg.inv(self._turns[1].matrix) @ view @ self._turns[0].matrix
-        return Measured(matches, bits, pose, found if pose is None else pose.found, view, *rotation_and_scale(upright_view))
+        return Measured(matches, bits, pose, found if pose is None else pose.found, *rotation_and_scale(upright_view), view)
 
     def rotated(self, features: Features, otherwise: Measured) -> Measured:
         """The result of features of any detector, rotated by one angle."""
