@@ -14,6 +14,7 @@ const int FEATURES = 2000;        // of a view
 const int MOST_IMPROVED = 3;      // rounds of improve()
 const double MOST_TILT = 4;       // of the views that models with a shear are searched in
 const double LEAST_REFINED = .5;  // of the matches that agree at the working size
+const int FEW = 100;              // matches: with fewer, blurred images may have more at half the size
 
 //! Pixels of the longer side at which upright images are matched, one after the other.
 std::vector<int> workingSizes(const Size& first, const Size& second)
@@ -147,10 +148,10 @@ private:
         for (int size : workingSizes(reference_.size(), second.size()))
         {
             const Answer answer = answerOf(pairOf(size), model_, tried);
-            if ((answer.judgement.isLast && !answer.found()) || best.agreeing.empty() ||
+            if ((answer.judgement.isLast && !answer.found() && !best.found()) || best.agreeing.empty() ||
                     answer.agreeing.rows > best.agreeing.rows)
                 best = answer;
-            if (best.judgement.isLast)
+            if (best.judgement.isLast && (!best.found() || best.agreeing.rows >= FEW))
                 return;
         }
     }

@@ -128,6 +128,29 @@ TEST(Alignment, finds_large_and_blurred_images)
     EXPECT_NEAR(1, transform.at<double>(2, 2), 1e-12);
 }
 
+//! At full size a few of their matches agree, but not exactly.
+TEST(Alignment, compares_dark_blurred_images_at_half_the_size)
+{
+    for (int seed : {17, 18, 19})
+    {
+        Mat sharp, dark, noise(900, 1200, CV_16S);
+        resize(picture(seed), sharp, Size(1200, 900), 0, 0, INTER_CUBIC);
+        GaussianBlur(sharp, sharp, Size(), 16);
+        sharp.convertTo(dark, CV_16S, .1);
+        RNG(5).fill(noise, RNG::NORMAL, 0, 6);
+        cv::add(dark, noise, dark, noArray(), CV_8U);
+        const Mat parts[] = {sharp(Rect(20, 30, 1150, 850)), dark(Rect(20, 30, 1150, 850))};
+        for (bool swapped : {false, true})
+        {
+            const Aligned result(swapped ? dark : sharp, parts[!swapped], ALIGN_AUTO);
+            ASSERT_TRUE(result.found) << result.reason;
+            EXPECT_NEAR(20, result.at(0, 2), 1) << seed << swapped;
+            EXPECT_NEAR(30, result.at(1, 2), 1) << seed << swapped;
+            EXPECT_GE(result.matches.rows, 50) << seed << swapped;
+        }
+    }
+}
+
 TEST(Alignment, finds_large_images_that_are_turned_sharp_or_blurred)
 {
     Mat large, turned, transform, error;
