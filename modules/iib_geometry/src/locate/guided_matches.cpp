@@ -3,17 +3,17 @@
 #include "guided_matches.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <map>
 
 namespace cv::iib {
 namespace {
 
-// Pixels: standard deviation of a refined match before it is learned, and its lower bound.
-constexpr double REFINED = .3, LEAST_REFINED = .03;
-constexpr double MAX_RATIO = 6;  // of a point's sizes in two images
+constexpr double LEAST_REFINED = .03;  // pixels: least standard deviation of refined matches
+constexpr double MAX_RATIO = 6;        // of a point's sizes in two images
 
-bool isRefined(const Match& match) { return match.deviation != Match().deviation; }
+const auto isRefined = std::mem_fn(&Match::isRefined);
 
 }  // namespace
 
@@ -40,7 +40,7 @@ void refineAgainstViews(std::vector<Match>& matches, const Views& views, size_t 
             if (placed[k])
             {
                 matches[numbers[k]].pixel = pairs.moved[k].pt;
-                matches[numbers[k]].deviation = REFINED;
+                matches[numbers[k]].isRefined = true;
             }
     }
 }
@@ -88,7 +88,7 @@ void learnDeviation(std::vector<Match>& matches, const Lens& lens, const Affine3
     std::copy_if(matches.begin(), matches.end(), std::back_inserter(some), isRefined);
     const double deviation = std::max(LEAST_REFINED, deviationOf(errorsOf(some, lens, pose)));
     for (Match& m : matches)
-        if (isRefined(m))
+        if (m.isRefined)
             m.deviation = deviation;
 }
 

@@ -15,7 +15,7 @@ struct Views
     const PreparedPicture& own;
 };
 
-/** Refines the pixels of matches against the map's images; refined matches get the deviation REFINED.
+/** Refines the pixels of matches against the map's images.
 @param least number of matches with an image of the map; images with fewer are skipped. */
 void refineAgainstViews(std::vector<Match>& matches, const Views& views, size_t least);
 

@@ -18,6 +18,7 @@ struct Match
     int row = 0;                //!< of that image's codes
     Vec2f sizes = Vec2f(1, 1);  //!< of the point in that image and in this one; only their ratio counts
     double deviation = 1;       //!< standard deviation of the pixel
+    bool isRefined = false;     //!< whether the pixel was refined against that image
     //! Projects the error; for line matches only its part perpendicular to the line.
     Matx22d errorProjection = Matx22d::eye();
 };
