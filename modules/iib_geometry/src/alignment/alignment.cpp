@@ -14,7 +14,8 @@ const int FEATURES = 2000;        // of a view
 const int MOST_IMPROVED = 3;      // rounds of improve()
 const double MOST_TILT = 4;       // of the views that models with a shear are searched in
 const double LEAST_REFINED = .5;  // of the matches that agree at the working size
-const int FEW = 100;              // matches: with fewer, blurred images may have more at half the size
+const int FEW = 100;              // matches: blurred images may have MANY times as many at half the size
+const int MANY = 3;
 
 //! Pixels of the longer side at which upright images are matched, one after the other.
 std::vector<int> workingSizes(const Size& first, const Size& second)
@@ -148,8 +149,9 @@ private:
         for (int size : workingSizes(reference_.size(), second.size()))
         {
             const Answer answer = answerOf(pairOf(size), model_, tried);
-            if ((answer.judgement.isLast && !answer.found() && !best.found()) || best.agreeing.empty() ||
-                    answer.agreeing.rows > best.agreeing.rows)
+            const bool isRefused = answer.judgement.isLast && !answer.found() && !best.found();
+            if (isRefused || best.agreeing.empty() ||
+                    answer.agreeing.rows > (best.found() ? MANY : 1) * best.agreeing.rows)
                 best = answer;
             if (best.judgement.isLast && (!best.found() || best.agreeing.rows >= FEW))
                 return;
