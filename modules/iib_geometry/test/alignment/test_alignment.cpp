@@ -133,12 +133,12 @@ TEST(Alignment, compares_dark_blurred_images_at_half_the_size)
 {
     for (int seed : {17, 18, 19})
     {
-        Mat sharp, dark, noise(900, 1200, CV_16S);
+        Mat sharp, exposed, dark, noise(900, 1200, CV_16S);
         resize(picture(seed), sharp, Size(1200, 900), 0, 0, INTER_CUBIC);
         GaussianBlur(sharp, sharp, Size(), 16);
-        sharp.convertTo(dark, CV_16S, .1);
+        sharp.convertTo(exposed, CV_16S, .1);
         RNG(5).fill(noise, RNG::NORMAL, 0, 6);
-        cv::add(dark, noise, dark, noArray(), CV_8U);
+        cv::add(exposed, noise, dark, noArray(), CV_8U);
         const Mat parts[] = {sharp(Rect(20, 30, 1150, 850)), dark(Rect(20, 30, 1150, 850))};
         for (bool swapped : {false, true})
         {
