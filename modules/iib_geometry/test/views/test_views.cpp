@@ -264,18 +264,18 @@ Mat wallWithWindows(const Mat& window, const std::vector<Point>& places)
     return wall;
 }
 
-//! The matches of each window agree, but not with those of the other one. A window alone is one structure.
+/** The matches of each window agree, but not with those of the other one, which is five times nearer: no zoom that is searched. A window alone is
+one structure. */
 TEST(Views, refuses_equal_windows_at_other_places)
 {
-    int found = 0;
     for (int seed = 0; seed < 10; seed++)
     {
         const Mat window = spots(seed, 40, Size(30, 36)),
-                  first = wallWithWindows(window, {{60, 200}, {520, 240}});
-        found += matchViews(
-                first, inOtherLight(wallWithWindows(window, {{250, 40}, {330, 400}})), noArray(), noArray());
+                  first = wallWithWindows(window, {{60, 200}, {520, 240}}),
+                  second = inOtherLight(wallWithWindows(window, {{250, 200}, {335, 215}}));
+        EXPECT_FALSE(matchViews(first, second, noArray(), noArray(), noArray(), noArray(), noArray(), 1000))
+                << seed;
     }
-    EXPECT_LE(found, 7);  // by chance, in some of the views; how many depends on the build
 }
 
 TEST(Views, one_matcher_serves_many_images)
