@@ -142,16 +142,16 @@ public:
 
 private:
     /** Keeps the best answer of all working sizes, up to the size that decides. An answer with fewer matches than a refused one, such as a
-    logo's, does not count. */
+    logo's, does not count. A transform of few matches does not decide alone, and gives way to MANY times as many. */
     template <typename PairOf>
     void attempt(PairOf pairOf, const ImageViews& second, int tried, Answer& best) const
     {
         for (int size : workingSizes(reference_.size(), second.size()))
         {
             const Answer answer = answerOf(pairOf(size), model_, tried);
-            const bool isRefused = answer.judgement.isLast && !answer.found() && !best.found();
-            if (isRefused || best.agreeing.empty() ||
-                    answer.agreeing.rows > (best.found() ? MANY : 1) * best.agreeing.rows)
+            const bool refuses = answer.judgement.isLast && !answer.found() && !best.found();
+            const int least = best.found() ? MANY * best.agreeing.rows : best.agreeing.rows;
+            if (refuses || best.agreeing.empty() || answer.agreeing.rows > least)
                 best = answer;
             if (best.judgement.isLast && (!best.found() || best.agreeing.rows >= FEW))
                 return;

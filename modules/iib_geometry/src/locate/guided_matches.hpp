@@ -15,7 +15,7 @@ struct Views
     const PreparedPicture& own;
 };
 
-/** Refines the pixels of matches against the map's images.
+/** Refines the pixels of matches against the map's images, and marks these matches as refined; learnDeviation() gives their deviation.
 @param least number of matches with an image of the map; images with fewer are skipped. */
 void refineAgainstViews(std::vector<Match>& matches, const Views& views, size_t least);
 

@@ -171,49 +171,6 @@ TEST(Alignment, refuses_a_logo_at_two_places)
     }
 }
 
-/** Half of the squares are at another depth and displaced by a few pixels. The transform fits one depth, and the errors must include
-the displacement of the other. In large images, only matches of one depth are refined at full size. */
-TEST(Alignment, errors_include_the_displacement_of_a_part)
-{
-    for (int times : {1, 4})
-    {
-        Mat reference;
-        resize(picture(16), reference, Size(), times, times, INTER_CUBIC);
-        const int beside = std::max(4, 2 * times), side = 60 * times;
-        Mat image = reference.clone();
-        for (int y = 0; y < reference.rows; y += side)
-            for (int x = 0; x < reference.cols; x += 2 * side)
-            {
-                const int column = x + (y / side % 2) * side;
-                const Rect square(column, y, std::min(side, reference.cols - beside - column), side);
-                if (square.width <= 0)
-                    continue;
-                reference(square + Point(beside, 0)).copyTo(image(square));
-            }
-        const Aligned result(reference, image, ALIGN_HOMOGRAPHY);
-        ASSERT_TRUE(result.found) << result.reason;
-        for (int k = 0; k < 4; k++)
-            EXPECT_GT(result.error.at<double>(k), beside / 2.) << times;
-    }
-}
-
-//! A third of the squares is off the plane, some by more than a shadow moves. The errors must include all of them.
-TEST(Alignment, errors_include_depth_off_the_plane)
-{
-    const Mat reference = picture(16);
-    Mat image = reference.clone();
-    for (int k = 0; k < 48; k++)
-        if (k * 7 % 12 >= 8)  // of twelve squares, two are displaced by 4 pixels and two by 9 to 16
-        {
-            const int by = k * 7 % 12 < 10 ? 4 : 9 + k * 5 % 8;
-            const Rect square(k % 8 * 50, k / 8 * 50, std::min(50, 400 - by - k % 8 * 50), 50);
-            reference(square + Point(by, 0)).copyTo(image(square));
-        }
-    const Aligned result(reference, image, ALIGN_HOMOGRAPHY);
-    ASSERT_TRUE(result.found) << result.reason;
-    EXPECT_GT(result.error.at<double>(0), 6);
-}
-
 TEST(Alignment, names_exposure_and_overlap)
 {
     Mat white;
