@@ -407,7 +407,6 @@ std::vector<Square<EpipolarProblem::Step>> EpipolarProblem::noiseInDerivatives(
                 const double whole = r.J[a] * r.J[b];
                 noise(a, b) = whole - shares[directions] * (whole - kept[directions] * noise(a, b));
             }
-        mirror(noise);
         all.push_back(noise);
     }
     return all;

@@ -59,8 +59,9 @@ public:
     void linearize(const RelativePose& pose, double limit, std::vector<Row<Step>>& rows) const;
     RelativePose moved(const RelativePose& pose, const Step& step) const { return iib::moved(pose, step); }
 
-    /** The part of each row's J J' that comes from noise of the points. Derivatives by the direction of t may be noise only, for
-    example without parallax or near an epipole; then all of that part counts as noise. The estimate errs on the large side.
+    /** The part of each row's J J' that comes from noise of the points, in the lower triangle. Derivatives by the direction of t
+    may be noise only, for example without parallax or near an epipole; then all of that part counts as noise. The estimate errs
+    on the large side.
     @param noise2 variance of a coordinate, pixels^2. */
     std::vector<Square<Step>> noiseInDerivatives(
             const RelativePose& pose, const std::vector<Row<Step>>& rows, double noise2) const;

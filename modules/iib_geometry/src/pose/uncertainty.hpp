@@ -109,11 +109,11 @@ Square<typename Problem::Step> covarianceOf(const Problem& problem, const typena
     }
     for (Part& part : all)
     {
-        mirror(part.hessian);
+        completeSymm(part.hessian, true);
         hessian += part.hessian;
         addProduct(part.along, shared * noise2, ofGradient);
     }
-    mirror(ofGradient);
+    completeSymm(ofGradient, true);
     const double least = noise2 / square(largest);
     const auto inverseOf = [&](const Square<Step>& m) {
         return ofEigenvalues(m, [&](double entry, double value) { return entry / std::max(value, least); });
@@ -135,7 +135,7 @@ Square<typename Problem::Step> covarianceOf(const Problem& problem, const typena
     Square<Step> spread = Square<Step>::zeros();
     for (const Step& change : changes)
         addProduct(Step(change - mean * (1 / groups)), FEW_PARTS * (groups - 1) / groups, spread);
-    mirror(spread);
+    completeSymm(spread, true);
     return limited(inverse * ofGradient * inverse + spread + unknown * square(largest), largest);
 }
 
