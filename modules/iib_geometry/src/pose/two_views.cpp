@@ -52,9 +52,8 @@ Vec<double, 5> stepBetween(const RelativePose& pose, const RelativePose& other)
 {
     const Vec3d turn = Affine3d(other.R * pose.R.t()).rvec();
     Vec2d along = tangentsOf(pose.t).t() * other.t;
-    const double sine = norm(along);
-    if (sine > 0)
-        along *= std::atan2(sine, pose.t.dot(other.t)) / sine;
+    const double sine = norm(along), angle = std::atan2(sine, pose.t.dot(other.t));
+    along = sine > 0 ? along * (angle / sine) : Vec2d(angle, 0);  // opposite directions have no sine
     return Vec<double, 5>(turn[0], turn[1], turn[2], along[0], along[1]);
 }
 

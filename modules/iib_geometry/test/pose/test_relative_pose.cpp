@@ -280,6 +280,7 @@ TEST(RelativePose, steps_lead_to_other_poses)
     EXPECT_LT(cv::norm(turned.R, Affine3d(turn).rotation()), 1e-12);
     EXPECT_LT(cv::norm(Vec3d(stepBetween(pose, turned).val), turn), 1e-12);
     EXPECT_NEAR(2, cv::norm(stepBetween(pose, other)), 1e-12);
+    EXPECT_NEAR(CV_PI, cv::norm(stepBetween(pose, {pose.R, -pose.t})), 1e-12);
 }
 
 // For odd cameras, OpenCV's decomposition of a homography returns matrices that are no rotations.
