@@ -28,7 +28,7 @@ set(kernels_of_opencv_test_iib_geometry "")  # it has no kernels
 foreach(program opencv_test_iib_geometry opencv_test_iib opencv_test_iib_index)  # the longest suites first
   set(pins_of_program ${pins})
   if(IIB_SANITIZE AND NOT kernels_of_${program})
-    set(pins_of_program "")  # under a pin it would run the same code once more, which takes hours
+    set(pins_of_program "")  # its own code is the same under each pin, and takes hours
   endif()
   set(suites "${PROJECT_BINARY_DIR}/${program}.suites.cmake")
   add_custom_command(TARGET ${program} POST_BUILD
