@@ -10,6 +10,7 @@ from unittest import mock
 import numpy as np
 
 import opencv_iib
+from opencv_iib import _core, error
 from opencv_iib._exif import MIRRORED
 from opencv_iib._files import RECORD
 from opencv_iib.localization import Camera, Localizer, Location, smooth_poses
@@ -203,9 +204,12 @@ class Localization(OnWall):
         os.makedirs(empty)
         localize = '--map', self.map, '--images', self.dark, '--out', out
         self.check_error('is no map', 'localize', '--map', self.images, *localize[2:])
-        self.check_mistake('(map has no lines|lines need OpenCV)', 'localize', *localize, '--lines')
-        self.check_mistake('no images below', 'localize', '--map', self.map, '--images', empty, '--out', out)
+        self.check_mistake("(map has no lines|built without OpenCV's module line_descriptor)", 'localize', *localize, '--lines')
         mapping = 'map', '--images', self.images, '--out', out, '--model'
+        for lacks in "this library was built without OpenCV's module line_descriptor", 'OpenCV 5 has no AKAZE':  # the library's words
+            with mock.patch.object(_core, 'buildMap', side_effect=error(lacks)):
+                self.check_mistake(lacks, *mapping, self.model)
+        self.check_mistake('no images below', 'localize', '--map', self.map, '--images', empty, '--out', out)
         self.check_error('model', *mapping, self.images)
         wrong = self.path('model')
         write_model(wrong, dict(zip(self.poses, (pose(y, x) for x, y in PLACES))))

@@ -21,7 +21,7 @@ from opencv_iib._progress import Progress
 from opencv_iib._streams import note
 from opencv_iib.features import check_max_size
 from opencv_iib.localization.localizer import Location
-from opencv_iib.localization.run import images_of, locate
+from opencv_iib.localization.run import check_fits, images_of, locate
 
 LEFT_OUT = ': left out of the map'
 UNREAD = (' cannot be read' + LEFT_OUT).encode()
@@ -51,7 +51,7 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
     :param mask: a mask, or a folder of masks that have the name of the image and .png, such as a.jpg.png.
     :param max_size: pixels of the longer side to which larger images are reduced; 0: they are not.
     :return: counts of images, points, and images that were left out.
-    :raises InvalidOption: for an invalid number of points, and if no image can be read.
+    :raises InvalidOption: for an invalid number of points, for lines or AKAZE's points if this OpenCV has none, and if no image can be read.
     :raises FileExistsError: if there is a map and force is not set, or images are left out.
     :raises FileNotFoundError: for a missing folder.
     :raises opencv_iib.error: for a damaged model, one of other images, and a folder with other files."""
@@ -101,7 +101,8 @@ def build(model: Path, images: Path, out: Path, points: int = 2000, workers: Opt
         try:
             _core.setNumThreads(used)
             pool.submit(_core.buildMap, os.fspath(model), read, target, points, lines, orb_and_akaze, max_size, report).result()
-        except _core.error:
+        except _core.error as e:
+            check_fits(e)
             if unreported:
                 why = min(unreported, key=in_order)[:-len(LEFT_OUT)]
                 raise InvalidOption(f"cannot use any of the model's {left_out} images in {os.fspath(images)}; the first: {why}") from None

@@ -162,14 +162,19 @@ def _numbers(cam_from_world: NDArray[np.float64]) -> list[str]:
     return [repr(value) for value in (*place.tolist(), *(vector * np.sinc(half / np.pi) / 2).tolist(), float(np.cos(half)))]
 
 
+def check_fits(e: error) -> None:
+    """:raises InvalidOption: if the library says that an option does not fit the map or this build."""
+    if re.search("the map has no lines|built without OpenCV's module|OpenCV 5 has no AKAZE", str(e)):
+        raise InvalidOption(str(e)) from None
+
+
 def _localizer(map: Path, points: int, lines: bool) -> Localizer:
     """:raises InvalidOption: for a missing folder, a map without lines, or an OpenCV that finds none."""
     check_is_folder(map)
     try:
         return Localizer(map, points, lines)
     except error as e:
-        if re.search("the map has no lines|lines need OpenCV's module", str(e)):
-            raise InvalidOption(str(e)) from None
+        check_fits(e)
         raise
 
 
