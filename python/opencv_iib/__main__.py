@@ -14,8 +14,6 @@ import threading
 import time
 from typing import Any, Callable, Collection, Iterable, Iterator, NoReturn, Optional, Sequence
 
-import numpy as np
-
 from opencv_iib import __version__, error, localization
 from opencv_iib._arguments import InvalidOption, import_module
 from opencv_iib._images import FORMATS
@@ -243,7 +241,7 @@ def _add_localize(add: Add) -> None:
     option('--sequence', action='store_true', help='images follow each other: look for each near the previous one')
     option('--pictures', action='store_true', help='write each image with the points that agree')
     option('--imu', metavar='IMU.CSV', help="smooth poses by an IMU, EuRoC's file; images must be named by their times")
-    option('--imu-from-camera', type=_value(parse_pose), metavar='TX,TY,TZ,QX,QY,QZ,QW', default=np.eye(4),
+    option('--imu-from-camera', type=_value(parse_pose), metavar='TX,TY,TZ,QX,QY,QZ,QW', default=argparse.SUPPRESS,
            help="pose of the camera in the IMU's axes (0,0,0,0,0,0,1)")
 
 
@@ -258,8 +256,9 @@ def _localize(arguments: argparse.Namespace) -> int:
 
 
 def _localize_stream(arguments: argparse.Namespace) -> int:
-    for option in ('out', 'imu', 'pictures', 'sequence'):
-        if getattr(arguments, option):
+    for option in ('out', 'imu', 'imu-from-camera', 'pictures', 'sequence'):
+        given = getattr(arguments, option.replace('-', '_'), None)
+        if given is not None and given is not False:
             raise InvalidOption(f'--images - goes without --{option}')
     if sys.stdin is None or sys.stdout is None:
         raise InvalidOption('--images - needs standard input and output, and one is not open')
@@ -381,7 +380,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         arguments = _parsed(parser, words)
         _cv2_error()  # the import of cv2 swallows Ctrl-C
         command, run, silent = (vars(arguments).pop(name) for name in ('command', 'run', 'quiet'))
-        resumable = command == 'align' or getattr(arguments, 'pairs', None) is not None  # colmap, and match of a list
+        resumable = command in ('align', 'colmap') or command == 'match' and arguments.pairs is not None
         thread_count(getattr(arguments, 'workers', None))
         with _ctrl_c(), quiet(silent):
             return int(run(arguments))

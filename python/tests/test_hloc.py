@@ -84,6 +84,8 @@ class Export(Collection):
         before = self.files()
         with mock.patch.object(hloc, 'pair_name', side_effect=OSError('no space left')), self.assertRaises(OSError):
             self.export(self.hloc, force=True)
+        with mock.patch.object(hloc, 'pair_name', side_effect=KeyboardInterrupt):
+            self.assertEqual(run_command('hloc', self.database, *self.hloc, '--force'), (130, '', 'interrupted\n'))
         self.assertEqual([file.read_bytes() for file in self.hloc], [b'precious'] * 3)
         self.assertEqual(self.files(), before)
 

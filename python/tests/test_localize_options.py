@@ -223,7 +223,7 @@ class Stream(Options):
         self.assertFalse(any(prior for _, prior in priors))
 
     def test_mistakes(self):
-        for option in (['--out', self.out], ['--pictures'], ['--imu', 'x.csv'], ['--sequence']):
+        for option in (['--out', self.out], ['--pictures'], ['--imu', 'x.csv'], ['--imu-from-camera', '0,0,0,0,0,0,1'], ['--sequence']):
             status, _, errors = self.stream('', *option)
             self.assertEqual((status, errors), (2, f'localize: --images - goes without {option[0]}\n'))
         status, _, errors = run_command('localize', '--map', self.map, '--images', self.images)
