@@ -138,7 +138,7 @@ public:
 
     Match its descriptors with HierarchicalMatcher::createRecommended().
 
-    @param maxFeatures number of keypoints, the strongest; 0 keeps all. 2000 give slightly more accurate poses than 1000.
+    @param maxFeatures number of keypoints, the strongest; 0 keeps all. 2000 give more accurate poses than 1000.
     @throws cv::Exception (StsOutOfRange) for a negative number.
      */
     CV_WRAP static Ptr<IIBDescriptorExtractor> createRecommended(int maxFeatures = 1000);

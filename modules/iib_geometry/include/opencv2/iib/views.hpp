@@ -23,7 +23,7 @@ fundamental matrix or a homography) wins. If many of its matches are outliers, t
 The result is significant if fewer than one in a thousand such results is expected among random matches, over all pairs
 of views that were compared. It does not depend on the number of threads.
 
-Cost: without a search, the time of detection, description, matching and propagation. A search takes 3 to 14 times as
+Cost: without a search, the time of detection, description, matching and propagation. A search takes 2 to 15 times as
 long with 1000 points, and 30 times as long if it finds nothing.
 
 Limits:
