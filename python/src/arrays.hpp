@@ -53,7 +53,7 @@ template <typename Point> bool read(const Array& array, std::vector<Point>& poin
 template <typename Point> cv::Mat matrixOf(const std::vector<Point>& points)
 {
     return points.empty() ? cv::Mat(0, cv::DataType<Point>::channels, CV_64F)
-                          : cv::Mat(points, true).reshape(1);
+                          : cv::Mat(points, true).reshape(1, (int)points.size());
 }
 
 //! Rows of x, y, size, angle, response, octave, class_id, CV_32F, of objects like cv2.KeyPoint.

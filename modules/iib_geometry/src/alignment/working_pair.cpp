@@ -192,7 +192,8 @@ Mat WorkingPair::inPixels(const AlignedPoints& points, const std::vector<bool>& 
         return all;
     perspectiveTransform(some.reference, both[0], described_[0]->fromImage.inv());
     perspectiveTransform(some.image, both[1], described_[1]->fromImage.inv());
-    hconcat(Mat(both[0]).reshape(1), Mat(both[1]).reshape(1), all);
+    const int count = (int)some.image.size();  // of rows: OpenCV 5 makes a row of a vector
+    hconcat(Mat(both[0]).reshape(1, count), Mat(both[1]).reshape(1, count), all);
     all.convertTo(all, CV_32F);
     return all;
 }

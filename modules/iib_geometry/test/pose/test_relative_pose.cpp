@@ -216,7 +216,8 @@ TEST(RelativePose, takes_both_depths_and_all_layouts_and_gives_fixed_sizes)
             second(views.points2.begin(), views.points2.end());
     const Points one(first.begin(), first.end()), other(second.begin(), second.end());
     Mat both, R, t;
-    hconcat(Mat(first).reshape(1), Mat(second).reshape(1), both);
+    const int count = (int)first.size();
+    hconcat(Mat(first).reshape(1, count), Mat(second).reshape(1, count), both);
     ASSERT_TRUE(findRelativePose(first, second, Mat(CAMERA), Matx33f(CAMERA), R, t));
     EXPECT_EQ(CV_64F, R.type());
     EXPECT_EQ(Size(1, 3), t.size());
@@ -226,7 +227,7 @@ TEST(RelativePose, takes_both_depths_and_all_layouts_and_gives_fixed_sizes)
     ASSERT_TRUE(findRelativePose(both.colRange(0, 2), both.colRange(2, 4), CAMERA, CAMERA, fixedR, fixedT,
             noArray(), 0, covariance));
     const PoseResult again(one, other);
-    const int sizes[] = {(int)first.size(), 1, 2};
+    const int sizes[] = {count, 1, 2};
     Matx33d deepR;
     Vec3d deepT;
     ASSERT_TRUE(findRelativePose(Mat(first).reshape(1, 3, sizes), second, CAMERA, CAMERA, deepR, deepT));

@@ -293,8 +293,8 @@ TEST(Views, one_matcher_serves_many_images)
         setNumThreads(1);
         ASSERT_TRUE(matchViews(image, other, alone1, alone2, noArray(), noArray(), noArray(), 600));
         setNumThreads(threads);
-        EXPECT_EQ(0, cv::norm(Mat(points1).reshape(1), alone1, NORM_INF));
-        EXPECT_EQ(0, cv::norm(Mat(points2).reshape(1), alone2, NORM_INF));
+        EXPECT_EQ(0, cv::norm(Mat(points1).reshape(1, alone1.rows), alone1, NORM_INF));
+        EXPECT_EQ(0, cv::norm(Mat(points2).reshape(1, alone2.rows), alone2, NORM_INF));
     }
 }
 
