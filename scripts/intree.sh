@@ -82,10 +82,11 @@ exec 8>"$build.lock"
 flock 8
 
 say "building OpenCV with the module in $build (minutes for the first time)"
-# OFF: formats and back ends that are not used here. AVX512_ICL (VPOPCNTDQ) is not in OpenCV's default list.
+# Python by its whole path, since CMake takes a name for a file in this folder. OFF: formats and back ends that are not used
+# here. AVX512_ICL (VPOPCNTDQ) is not in OpenCV's default list.
 quietly "$build.log" cmake -S "$source" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DOPENCV_EXTRA_MODULES_PATH="$extra_modules" -DBUILD_LIST="$list" \
-    "-DPYTHON3_EXECUTABLE=$python3" \
+    "-DPYTHON3_EXECUTABLE=$(command -v "$python3")" \
     -DCPU_DISPATCH="$dispatch" -DCMAKE_CXX_FLAGS_RELEASE="$flags -DNDEBUG" $options $quick \
     -DWITH_IPP=OFF -DWITH_ITT=OFF \
     -DWITH_TIFF=OFF -DWITH_WEBP=OFF -DWITH_OPENJPEG=OFF -DWITH_JASPER=OFF -DWITH_OPENEXR=OFF \

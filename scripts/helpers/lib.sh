@@ -10,9 +10,8 @@ cache="${XDG_CACHE_HOME:-$HOME/.cache}/opencv_iib"
 jobs=$(getconf _NPROCESSORS_ONLN)
 
 # The Python of every script: the system's, for which apt installs packages, even if pyenv or conda comes first in the PATH.
-# Where only another one is there, that one; where none is, the system's, which a script will install.
 python3=${IIB_PYTHON:-/usr/bin/python3}
-[ -n "${IIB_PYTHON:-}" ] || [ -x "$python3" ] || python3=$(command -v python3) || python3=/usr/bin/python3
+[ -n "${IIB_PYTHON:-}" ] || [ -x "$python3" ] || python3=python3
 
 for argument in "$@"; do
     case "$argument" in
